@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: Apache-2.0
+# Writes a C++ file with the text of data files (see burin_embed in BurinTargets.cmake).
+set(code "// Made by cmake/Embed.cmake; change the data files instead.\n#include \"burin/base/embedded.h\"\n\nnamespace burin::embedded {\nstd::vector<File> ${FUNCTION}() {\n  return {\n")
+list(SORT FILES)
+foreach(file IN LISTS FILES)
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} text)
+  # A raw string literal may hold at most 65536 characters by the standard: cut long files in pieces.
+  string(LENGTH "${text}" length)
+  set(pieces "")
+  set(at 0)
+  while(at LESS length)
+    string(SUBSTRING "${text}" ${at} 12000 piece)
+    string(APPEND pieces " R\"~burin~(${piece})~burin~\"")
+    math(EXPR at "${at} + 12000")
+  endwhile()
+  if(pieces STREQUAL "")
+    set(pieces " \"\"")
+  endif()
+  string(APPEND code "      {\"${name}\",${pieces}},\n")
+endforeach()
+string(APPEND code "  };\n}\n}  // namespace burin::embedded\n")
+file(WRITE ${OUT} "${code}")
