@@ -8,8 +8,8 @@
 
 namespace burin::io::svg {
 
-/// 0xRRGGBB of a name, #rgb, #rgba, #rrggbb, #rrggbbaa, rgb(), rgba(), hsl() or hsla(); opacity is not considered.
-/// Nothing for "none", "currentColor", url() and what is no colour.
+/// 0xRRGGBB of a name, #rgb, #rgba, #rrggbb, #rrggbbaa, rgb(), rgba(), hsl() or hsla(); opacity is not
+/// considered. Nothing for "none", "currentColor", url() and what is no colour.
 std::optional<std::uint32_t> parse_color(std::string_view text);
 
 }  // namespace burin::io::svg

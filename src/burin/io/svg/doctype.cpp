@@ -31,12 +31,14 @@ InternalEntities InternalEntities::from_doctype(std::string_view doctype) {
   constexpr std::string_view kDeclaration = "<!ENTITY";
   InternalEntities entities;
   std::size_t i = 0;
-  while ((i = doctype.find(kDeclaration, i)) != std::string_view::npos && entities.values_.size() < kMaxEntities) {
+  while ((i = doctype.find(kDeclaration, i)) != std::string_view::npos &&
+         entities.values_.size() < kMaxEntities) {
     i += kDeclaration.size();
     const std::string_view name = token(doctype, i);
     while (i < doctype.size() && is_blank(doctype[i])) ++i;
     // "%" declares a parameter entity, SYSTEM and PUBLIC external ones: neither has its text here.
-    if (name.empty() || name == "%" || i >= doctype.size() || (doctype[i] != '"' && doctype[i] != '\'')) continue;
+    if (name.empty() || name == "%" || i >= doctype.size() || (doctype[i] != '"' && doctype[i] != '\''))
+      continue;
     const std::size_t end = doctype.find(doctype[i], i + 1);
     if (end == std::string_view::npos) break;
     entities.values_.emplace(name, doctype.substr(i + 1, end - i - 1));  // the first declaration holds
@@ -53,7 +55,8 @@ Result<std::string> InternalEntities::expand(std::string_view text) const {
 }
 
 Result<void> InternalEntities::expand_into(std::string_view text, int depth, std::string& out) const {
-  if (depth > kMaxNesting) return Error{ErrorCode::range, "entities nested too deeply (8 levels are accepted)", {}};
+  if (depth > kMaxNesting)
+    return Error{ErrorCode::range, "entities nested too deeply (8 levels are accepted)", {}};
   std::size_t i = 0;
   while (i < text.size()) {
     const std::size_t amp = text.find('&', i);
@@ -68,7 +71,8 @@ Result<void> InternalEntities::expand_into(std::string_view text, int depth, std
     }
     if (auto done = expand_into(value->second, depth + 1, out); !done) return done;
     if (out.size() > kMaxExpanded + text.size()) {
-      return Error{ErrorCode::range, "entities of the DOCTYPE expand to more than 64 KiB in one attribute", {}};
+      return Error{
+          ErrorCode::range, "entities of the DOCTYPE expand to more than 64 KiB in one attribute", {}};
     }
     i = amp + name.size() + 2;
   }

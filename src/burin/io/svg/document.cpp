@@ -57,7 +57,8 @@ class LineTable {
   std::vector<std::size_t> starts_;
 };
 
-/// Copies the tree of the XML library into the flat list, without recursion: files may nest as deep as they like.
+/// Copies the tree of the XML library into the flat list, without recursion: files may nest as deep as they
+/// like.
 class Converter {
  public:
   Converter(Document& document, std::string_view text, std::string file, Diagnostics& diagnostics)
@@ -89,7 +90,8 @@ class Converter {
         entities_ = InternalEntities::from_doctype(node.value());
         return {};
       case pugi::node_element:
-        if (!document_.elements.empty()) return fail(node.offset_debug(), "a second root element (one <svg> is accepted)");
+        if (!document_.elements.empty())
+          return fail(node.offset_debug(), "a second root element (one <svg> is accepted)");
         return convert(node);
       default:
         return {};
@@ -137,7 +139,8 @@ class Converter {
       node = node.next_sibling();
     }
     if (!document_.elements[0].is("svg")) {
-      return fail(root.offset_debug(), "the root element is <" + std::string(root.name()) + "> (an <svg> is accepted)");
+      return fail(root.offset_debug(),
+                  "the root element is <" + std::string(root.name()) + "> (an <svg> is accepted)");
     }
     return {};
   }
@@ -177,7 +180,8 @@ class Converter {
     declare_namespaces(element, index);
     resolve_names(element, node.name());
     if (auto twice = duplicate(element); !twice.empty()) {
-      return fail(offset, "attribute '" + std::string(twice) + "' twice in <" + std::string(element.name) + ">");
+      return fail(offset,
+                  "attribute '" + std::string(twice) + "' twice in <" + std::string(element.name) + ">");
     }
     link(element, index);
     document_.elements.push_back(std::move(element));
@@ -202,7 +206,8 @@ class Converter {
       const std::string_view bound = default_one ? std::string_view{} : name;
       bindings_[bound].push_back({index, namespace_of_uri(attribute.value)});
       declared_.push_back({index, bound});
-      if (attribute.value.starts_with("http://ns.adobe.com/AdobeIllustrator/")) document_.made_by_illustrator = true;
+      if (attribute.value.starts_with("http://ns.adobe.com/AdobeIllustrator/"))
+        document_.made_by_illustrator = true;
     }
   }
 
@@ -299,7 +304,8 @@ int Document::find(std::string_view id) const {
   return found == by_id.end() ? -1 : found->second;
 }
 
-Result<Document> parse_document(std::string_view bytes, const std::string& file_name, Diagnostics& diagnostics) {
+Result<Document> parse_document(std::string_view bytes, const std::string& file_name,
+                                Diagnostics& diagnostics) {
   auto text = to_utf8(bytes);
   if (!text) {
     Error error = std::move(text).error();
@@ -310,7 +316,8 @@ Result<Document> parse_document(std::string_view bytes, const std::string& file_
   document.byte_count = text->size();
   auto xml = std::make_shared<pugi::xml_document>();
   constexpr unsigned kFlags = pugi::parse_default | pugi::parse_comments | pugi::parse_doctype;
-  const pugi::xml_parse_result parsed = xml->load_buffer(text->data(), text->size(), kFlags, pugi::encoding_utf8);
+  const pugi::xml_parse_result parsed =
+      xml->load_buffer(text->data(), text->size(), kFlags, pugi::encoding_utf8);
   Converter converter(document, *text, file_name, diagnostics);
   if (!parsed) {
     const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));

@@ -52,12 +52,13 @@ struct Document {
   /// Element of the id, -1 when there is none.
   int find(std::string_view id) const;
 
-  std::shared_ptr<void> xml;          ///< owns the texts that the views point into
-  std::deque<std::string> expanded;   ///< attribute values after the expansion of entities
+  std::shared_ptr<void> xml;         ///< owns the texts that the views point into
+  std::deque<std::string> expanded;  ///< attribute values after the expansion of entities
 };
 
-/// Errors: syntax with line and column (not well-formed XML, no <svg> root), unsupported (compressed, drawing parts
-/// inside entities), range (entity bombs).
-Result<Document> parse_document(std::string_view bytes, const std::string& file_name, Diagnostics& diagnostics);
+/// Errors: syntax with line and column (not well-formed XML, no <svg> root), unsupported (compressed, drawing
+/// parts inside entities), range (entity bombs).
+Result<Document> parse_document(std::string_view bytes, const std::string& file_name,
+                                Diagnostics& diagnostics);
 
 }  // namespace burin::io::svg

@@ -60,12 +60,14 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
 bool declares_latin1(std::string_view bytes) {
   if (!bytes.starts_with("<?xml")) return false;
   const std::string declaration = to_lower(bytes.substr(0, bytes.substr(0, 400).find("?>")));
-  return declaration.find("iso-8859-1") != std::string::npos || declaration.find("latin1") != std::string::npos ||
+  return declaration.find("iso-8859-1") != std::string::npos ||
+         declaration.find("latin1") != std::string::npos ||
          declaration.find("windows-1252") != std::string::npos;
 }
 
 int line_of(std::string_view text, std::size_t offset) {
-  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
+  return 1 +
+         static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
 }
 
 }  // namespace
@@ -74,7 +76,12 @@ bool is_valid_utf8(std::string_view text) {
   std::size_t i = 0;
   while (i < text.size()) {
     const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t more = lead < 0x80 ? 0 : lead < 0xC2 ? 9 : lead < 0xE0 ? 1 : lead < 0xF0 ? 2 : lead < 0xF5 ? 3 : 9;
+    const std::size_t more = lead < 0x80   ? 0
+                             : lead < 0xC2 ? 9
+                             : lead < 0xE0 ? 1
+                             : lead < 0xF0 ? 2
+                             : lead < 0xF5 ? 3
+                                           : 9;
     if (more == 9 || i + more >= text.size() + (more == 0 ? 1 : 0)) return false;
     for (std::size_t k = 1; k <= more; ++k) {
       const auto next = static_cast<unsigned char>(text[i + k]);
@@ -89,21 +96,27 @@ bool is_valid_utf8(std::string_view text) {
 
 Result<std::string> to_utf8(std::string_view bytes) {
   if (bytes.starts_with("\x1F\x8B")) {
-    return Error{ErrorCode::unsupported, "the file is compressed (svgz; decompress it first: an SVG text is accepted)", {}};
+    return Error{ErrorCode::unsupported,
+                 "the file is compressed (svgz; decompress it first: an SVG text is accepted)",
+                 {}};
   }
   std::string text;
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
     text = from_utf16(bytes.substr(2), bytes[0] == '\xFE');
-  } else if (bytes.size() >= 2 && ((bytes[0] == '<' && bytes[1] == '\0') || (bytes[0] == '\0' && bytes[1] == '<'))) {
+  } else if (bytes.size() >= 2 &&
+             ((bytes[0] == '<' && bytes[1] == '\0') || (bytes[0] == '\0' && bytes[1] == '<'))) {
     text = from_utf16(bytes, bytes[0] == '\0');
   } else {
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
     text = declares_latin1(bytes) || !is_valid_utf8(bytes) ? from_latin1(bytes) : std::string(bytes);
   }
   if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
-    return Error{ErrorCode::syntax, "a NUL byte in the text (an SVG file is an XML text)", {{}, line_of(text, nul), 0, {}}};
+    return Error{ErrorCode::syntax,
+                 "a NUL byte in the text (an SVG file is an XML text)",
+                 {{}, line_of(text, nul), 0, {}}};
   }
-  if (trim(text).empty()) return Error{ErrorCode::syntax, "the file is empty (an SVG file has an <svg> element)", {}};
+  if (trim(text).empty())
+    return Error{ErrorCode::syntax, "the file is empty (an SVG file has an <svg> element)", {}};
   return text;
 }
 

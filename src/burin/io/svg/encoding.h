@@ -9,8 +9,9 @@
 
 namespace burin::io::svg {
 
-/// UTF-8 with or without a byte order mark, UTF-16 with one (or declared by its first bytes), ISO-8859-1 when the
-/// XML declaration says so or the bytes are not UTF-8. Errors: unsupported (compressed), syntax (empty, NUL bytes).
+/// UTF-8 with or without a byte order mark, UTF-16 with one (or declared by its first bytes), ISO-8859-1 when
+/// the XML declaration says so or the bytes are not UTF-8. Errors: unsupported (compressed), syntax (empty,
+/// NUL bytes).
 Result<std::string> to_utf8(std::string_view bytes);
 
 bool is_valid_utf8(std::string_view text);

@@ -77,13 +77,16 @@ Result<RootSize> root_size(const Element& root, const std::string& file) {
   size.box = parse_view_box(text);
   if (!size.box) {
     return Error{ErrorCode::syntax,
-                 "viewBox=\"" + std::string(text.substr(0, 60)) + "\" (four numbers, width and height above 0, are accepted)",
+                 "viewBox=\"" + std::string(text.substr(0, 60)) +
+                     "\" (four numbers, width and height above 0, are accepted)",
                  {file, root.line, 0, root.label()}};
   }
   return size;
 }
 
-Affine2 flipped(const Affine2& map, double height_mm) { return Affine2{1, 0, 0, -1, 0, height_mm} * map; }
+Affine2 flipped(const Affine2& map, double height_mm) {
+  return Affine2{1, 0, 0, -1, 0, height_mm} * map;
+}
 
 /// --units: the user unit is given, whatever width and viewBox say.
 Page page_by_option(const RootSize& size, Units units) {
@@ -93,7 +96,8 @@ Page page_by_option(const RootSize& size, Units units) {
   page.px_per_inch = kMmPerInch / scale;
   page.reason = units == Units::inch ? "--units inch" : "--units mm";
   if (size.box) {
-    page.to_mm = flipped({scale, 0, 0, scale, -scale * size.box->x, -scale * size.box->y}, scale * size.box->height);
+    page.to_mm =
+        flipped({scale, 0, 0, scale, -scale * size.box->x, -scale * size.box->y}, scale * size.box->height);
     page.viewport = {size.box->width, size.box->height, true};
     return page;
   }
@@ -121,11 +125,13 @@ Page page_without_box(const RootSize& size, const Resolution& resolution) {
 
 std::string box_reason(const Element& root, const RootSize& size, const Resolution& resolution) {
   const auto over = [&](std::string_view name, double box) {
-    return std::string(name) + " " + std::string(trim(root.get(name))) + " over viewBox " + format_shortest(box);
+    return std::string(name) + " " + std::string(trim(root.get(name))) + " over viewBox " +
+           format_shortest(box);
   };
   if (size.width && size.width->physical()) return over("width", size.box->width);
   if (size.height && size.height->physical() && !size.width) return over("height", size.box->height);
-  if (size.width && size.width->value != size.box->width) return resolution.reason + ", " + over("width", size.box->width);
+  if (size.width && size.width->value != size.box->width)
+    return resolution.reason + ", " + over("width", size.box->width);
   if (!size.width && size.height && size.height->value != size.box->height) {
     return resolution.reason + ", " + over("height", size.box->height);
   }

@@ -12,10 +12,10 @@
 namespace burin::io::svg {
 
 struct Page {
-  geom::Affine2 to_mm;        ///< user units of the root (y down) -> mm (y up)
-  double px_per_inch = 96;    ///< what a px inside the drawing is worth for lengths given in mm, in, ...
-  Viewport viewport;          ///< in user units
-  double mm_per_unit = 1;     ///< geometric mean of both axes when preserveAspectRatio is "none"
+  geom::Affine2 to_mm;      ///< user units of the root (y down) -> mm (y up)
+  double px_per_inch = 96;  ///< what a px inside the drawing is worth for lengths given in mm, in, ...
+  Viewport viewport;        ///< in user units
+  double mm_per_unit = 1;   ///< geometric mean of both axes when preserveAspectRatio is "none"
   std::string reason;
 };
 

@@ -23,14 +23,16 @@ constexpr std::string_view kCommands = "MmZzLlHhVvCcSsQqTtAa";
 /// Reads one command after the other into the builder.
 class PathParser {
  public:
-  PathParser(std::string_view data, std::size_t max_curves) : scan_(data), data_(data), max_curves_(max_curves) {}
+  PathParser(std::string_view data, std::size_t max_curves)
+      : scan_(data), data_(data), max_curves_(max_curves) {}
 
   Result<Outline> run() {
     scan_.skip_blank();
     while (!scan_.done() && !error_) {
       const char command = scan_.peek();
       if (kCommands.find(command) == std::string_view::npos) {
-        fail(previous_ == '\0' ? "a path starts with M or m" : "not a path command (M L H V C S Q T A Z or a number)");
+        fail(previous_ == '\0' ? "a path starts with M or m"
+                               : "not a path command (M L H V C S Q T A Z or a number)");
         break;
       }
       if (previous_ == '\0' && command != 'M' && command != 'm') {
@@ -95,8 +97,10 @@ class PathParser {
 
   void bezier(char kind, Vec2 base) {
     const Point2 from = builder_.current();
-    // S and T mirror the control point of a preceding curve of the same family, else start with the current point.
-    const bool smooth = kind == 'S' ? previous_ == 'C' || previous_ == 'S' : previous_ == 'Q' || previous_ == 'T';
+    // S and T mirror the control point of a preceding curve of the same family, else start with the current
+    // point.
+    const bool smooth =
+        kind == 'S' ? previous_ == 'C' || previous_ == 'S' : previous_ == 'Q' || previous_ == 'T';
     const Point2 mirrored = smooth ? from + (from - last_control_) : from;
     Point2 c1 = mirrored;
     if (kind == 'C' || kind == 'Q') {
@@ -159,9 +163,11 @@ class PathParser {
     if (error_) return;
     constexpr std::size_t kShown = 12;
     const std::size_t at = std::min(scan_.position(), data_.size());
-    std::string found = at == data_.size() ? "the end of the data" : "'" + std::string(data_.substr(at, kShown)) + "'";
+    std::string found =
+        at == data_.size() ? "the end of the data" : "'" + std::string(data_.substr(at, kShown)) + "'";
     error_ = Error{ErrorCode::syntax,
-                   "path data, character " + std::to_string(at + 1) + ": " + what + ", found " + found, {}};
+                   "path data, character " + std::to_string(at + 1) + ": " + what + ", found " + found,
+                   {}};
   }
 
   Scanner scan_;
@@ -218,13 +224,15 @@ void OutlineBuilder::line_to(Point2 p) {
 
 void OutlineBuilder::quadratic_to(Point2 c, Point2 p) {
   begin_if_needed();
-  if (c == current_ || c == p) return line_to(p);  // all control points on the ends: the same points as the line
+  if (c == current_ || c == p)
+    return line_to(p);  // all control points on the ends: the same points as the line
   add(bezier_of({current_, c, p}), p);
 }
 
 void OutlineBuilder::cubic_to(Point2 c1, Point2 c2, Point2 p) {
   begin_if_needed();
-  // Control points that coincide with the ends, in order: monotone along the chord, the same points as the line.
+  // Control points that coincide with the ends, in order: monotone along the chord, the same points as the
+  // line.
   const bool straight = (c1 == current_ && (c2 == current_ || c2 == p)) || (c1 == p && c2 == p);
   if (straight) return line_to(p);
   add(bezier_of({current_, c1, c2, p}), p);
@@ -236,8 +244,8 @@ void OutlineBuilder::arc_to(double rx, double ry, double rotation_deg, bool larg
   add(arc_between(current_, p, rx, ry, rotation_deg, large, sweep), p);
 }
 
-/// n additions of coordinates up to M, each read and summed with relative error 2^-53 twice, move the end by at
-/// most 2 n 2^-53 M = n eps M; doubled for the closing step itself.
+/// n additions of coordinates up to M, each read and summed with relative error 2^-53 twice, move the end by
+/// at most 2 n 2^-53 M = n eps M; doubled for the closing step itself.
 double OutlineBuilder::closing_rounding() const {
   return 2.0 * static_cast<double>(steps_) * std::numeric_limits<double>::epsilon() * magnitude_;
 }
@@ -282,7 +290,8 @@ Outline OutlineBuilder::finish() {
   return std::move(outline_);
 }
 
-Curve2 arc_between(Point2 from, Point2 to, double rx, double ry, double rotation_deg, bool large, bool sweep) {
+Curve2 arc_between(Point2 from, Point2 to, double rx, double ry, double rotation_deg, bool large,
+                   bool sweep) {
   rx = std::abs(rx);
   ry = std::abs(ry);
   if (rx == 0 || ry == 0) return geom::Line2{from, to};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SVG path data -> curves, in the coordinates of the data (y as written). SVG 1.1 chapter 8, appendix F.6 for arcs.
+// SVG path data -> curves, in the coordinates of the data (y as written). SVG 1.1 chapter 8, appendix F.6 for
+// arcs.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +18,8 @@ struct Outline {
   int points_dropped = 0;  ///< subpaths that are a single point
 };
 
-/// Collects connected curves. Pieces of exactly zero length are left out; Z adds the closing line when the end
-/// differs from the start by more than the rounding of relative coordinates.
+/// Collects connected curves. Pieces of exactly zero length are left out; Z adds the closing line when the
+/// end differs from the start by more than the rounding of relative coordinates.
 class OutlineBuilder {
  public:
   void move_to(geom::Point2 p);
@@ -44,18 +45,18 @@ class OutlineBuilder {
   std::vector<geom::Curve2> curves_;
   std::size_t curve_count_ = 0;
   geom::Point2 start_, current_;
-  bool pending_ = false;    // a subpath has been started and not flushed
-  double magnitude_ = 0;    // largest coordinate of the subpath
-  std::size_t steps_ = 0;   // commands of the subpath
+  bool pending_ = false;   // a subpath has been started and not flushed
+  double magnitude_ = 0;   // largest coordinate of the subpath
+  std::size_t steps_ = 0;  // commands of the subpath
 };
 
-/// The arc from `from` to `to` by the end-point parametrization: radii too small are enlarged, a zero radius gives
-/// the line. A circular arc is an Arc2. Precondition: from != to.
-geom::Curve2 arc_between(geom::Point2 from, geom::Point2 to, double rx, double ry, double rotation_deg, bool large,
-                         bool sweep);
+/// The arc from `from` to `to` by the end-point parametrization: radii too small are enlarged, a zero radius
+/// gives the line. A circular arc is an Arc2. Precondition: from != to.
+geom::Curve2 arc_between(geom::Point2 from, geom::Point2 to, double rx, double ry, double rotation_deg,
+                         bool large, bool sweep);
 
-/// All commands M L H V C S Q T A Z, absolute and relative, with implicit repeats. Errors: syntax (the message has
-/// the character position, from 1), range (more than `max_curves`).
+/// All commands M L H V C S Q T A Z, absolute and relative, with implicit repeats. Errors: syntax (the
+/// message has the character position, from 1), range (more than `max_curves`).
 Result<Outline> parse_path_data(std::string_view data, std::size_t max_curves);
 
 }  // namespace burin::io::svg

@@ -11,12 +11,13 @@ namespace {
 
 /// Up to here doubles resolve 1e-7 mm, the distance at which points count as the same.
 constexpr double kMaxCoordinateMm = 1e9;
-/// An ellipse that differs from a circle by less is one: files give matrices with six to eight digits, and points
-/// this close are the same (Tolerance::point_mm).
+/// An ellipse that differs from a circle by less is one: files give matrices with six to eight digits, and
+/// points this close are the same (Tolerance::point_mm).
 constexpr double kRoundnessMm = 1e-7;
 
-/// Conjugate half-diameters of a circle are perpendicular and equal; the deviation is at most the sum of both errors.
-Curve2 round_if_round(const Curve2& curve) {
+/// Conjugate half-diameters of a circle are perpendicular and equal; the deviation is at most the sum of both
+/// errors.
+Curve2 round_if_round(Curve2 curve) {
   const auto* ellipse = std::get_if<geom::EllipseArc2>(&curve);
   if (ellipse == nullptr) return curve;
   const double a = norm(ellipse->major), b = norm(ellipse->minor);
@@ -43,9 +44,10 @@ bool collapsed(const Curve2& curve) {
 
 Result<void> check(const Curve2& curve) {
   const geom::Box2 box = geom::bounds(curve);
-  const bool inside = box.lo.x >= -kMaxCoordinateMm && box.lo.y >= -kMaxCoordinateMm && box.hi.x <= kMaxCoordinateMm &&
-                      box.hi.y <= kMaxCoordinateMm;
-  if (!inside) return Error{ErrorCode::range, "coordinates beyond 1e9 mm (smaller drawings are accepted)", {}};
+  const bool inside = box.lo.x >= -kMaxCoordinateMm && box.lo.y >= -kMaxCoordinateMm &&
+                      box.hi.x <= kMaxCoordinateMm && box.hi.y <= kMaxCoordinateMm;
+  if (!inside)
+    return Error{ErrorCode::range, "coordinates beyond 1e9 mm (smaller drawings are accepted)", {}};
   return geom::validate(curve);
 }
 

@@ -15,8 +15,9 @@ struct Placed {
   bool dropped = false;  ///< a whole subpath collapsed to a point
 };
 
-/// Curves are mapped exactly; ellipses that the map made round become arcs. Pieces that collapse to a point are left
-/// out. Errors: range (coordinates beyond 1e9 mm), geometry (what validate() refuses, a map that flattens the plane).
+/// Curves are mapped exactly; ellipses that the map made round become arcs. Pieces that collapse to a point
+/// are left out. Errors: range (coordinates beyond 1e9 mm), geometry (what validate() refuses, a map that
+/// flattens the plane).
 Result<Placed> place_outline(const geom::Affine2& map, std::vector<Path> paths);
 
 }  // namespace burin::io::svg

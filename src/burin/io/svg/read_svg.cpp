@@ -27,7 +27,8 @@ Result<Drawing> read_svg(std::string_view bytes, const ReadOptions& options, Dia
   } catch (const std::bad_alloc&) {
     return Error{ErrorCode::range, "the drawing is too large for the memory", {options.file_name, 0, 0, {}}};
   } catch (const std::exception& e) {
-    return Error{ErrorCode::internal, std::string("reading the SVG: ") + e.what(), {options.file_name, 0, 0, {}}};
+    return Error{
+        ErrorCode::internal, std::string("reading the SVG: ") + e.what(), {options.file_name, 0, 0, {}}};
   }
 }
 

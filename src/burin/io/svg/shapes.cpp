@@ -33,7 +33,8 @@ Result<std::array<double, N>> read_fields(const Element& element, const LengthFr
     if (!value) return value.error();
     if (fields[i].size && *value < 0) {
       return Error{ErrorCode::range,
-                   std::string(fields[i].name) + "=\"" + std::string(element.get(fields[i].name).substr(0, 40)) +
+                   std::string(fields[i].name) + "=\"" +
+                       std::string(element.get(fields[i].name).substr(0, 40)) +
                        "\" is negative (0 or more is accepted)",
                    {}};
     }
@@ -42,7 +43,9 @@ Result<std::array<double, N>> read_fields(const Element& element, const LengthFr
   return values;
 }
 
-double or_zero(double value) { return std::isnan(value) ? 0 : value; }
+double or_zero(double value) {
+  return std::isnan(value) ? 0 : value;
+}
 
 Outline nothing() {
   Outline outline;
@@ -85,7 +88,9 @@ Result<Outline> rect(const Element& element, const LengthFrame& frame) {
   const double x1 = x + rx, x2 = rx == w / 2 ? x1 : right - rx;
   const double y1 = y + ry, y2 = ry == h / 2 ? y1 : bottom - ry;
   OutlineBuilder builder;
-  const auto corner = [&](Point2 p) { rx > 0 ? builder.arc_to(rx, ry, 0, false, true, p) : builder.line_to(p); };
+  const auto corner = [&](Point2 p) {
+    rx > 0 ? builder.arc_to(rx, ry, 0, false, true, p) : builder.line_to(p);
+  };
   builder.move_to({x1, y});
   builder.line_to({x2, y});
   corner({right, y1});
@@ -100,7 +105,8 @@ Result<Outline> rect(const Element& element, const LengthFrame& frame) {
 }
 
 Result<Outline> circle(const Element& element, const LengthFrame& frame) {
-  constexpr std::array<Field, 3> kFields{{{"cx", Axis::x, false}, {"cy", Axis::y, false}, {"r", Axis::both, true}}};
+  constexpr std::array<Field, 3> kFields{
+      {{"cx", Axis::x, false}, {"cy", Axis::y, false}, {"r", Axis::both, true}}};
   const auto fields = read_fields(element, frame, kFields);
   if (!fields) return fields.error();
   const auto [cx, cy, r] = *fields;
@@ -140,7 +146,10 @@ Result<Outline> polyline(const Element& element, bool closed, std::size_t max_cu
   if (!read_numbers(points, max_numbers, v)) {
     return v.size() >= max_numbers
                ? Error{ErrorCode::range, "more curves than the limit of " + std::to_string(max_curves), {}}
-               : Error{ErrorCode::syntax, "points, number " + std::to_string(v.size() + 1) + ": not a number (pairs of numbers are accepted)", {}};
+               : Error{ErrorCode::syntax,
+                       "points, number " + std::to_string(v.size() + 1) +
+                           ": not a number (pairs of numbers are accepted)",
+                       {}};
   }
   if (v.size() % 2 != 0) {
     return Error{ErrorCode::syntax, "points holds an odd number of coordinates (pairs are accepted)", {}};
@@ -156,7 +165,8 @@ Result<Outline> polyline(const Element& element, bool closed, std::size_t max_cu
 
 }  // namespace
 
-Result<double> LengthFrame::read(const Element& element, std::string_view name, Axis axis, double fallback) const {
+Result<double> LengthFrame::read(const Element& element, std::string_view name, Axis axis,
+                                 double fallback) const {
   const std::string_view text = trim(element.get(name));
   if (text.empty() || text == "auto") return fallback;
   const std::string shown = std::string(name) + "=\"" + std::string(text.substr(0, 40)) + "\"";
@@ -164,13 +174,16 @@ Result<double> LengthFrame::read(const Element& element, std::string_view name, 
   if (!length) return Error{ErrorCode::syntax, shown + " (a length such as 10, 10mm or 50% is accepted)", {}};
   const auto value = length_in_user_units(*length, px_per_inch, viewport, axis);
   if (!value) {
-    return Error{ErrorCode::unsupported, shown + " refers to a page size that the file does not give (a length is accepted)", {}};
+    return Error{ErrorCode::unsupported,
+                 shown + " refers to a page size that the file does not give (a length is accepted)",
+                 {}};
   }
   return *value;
 }
 
 bool is_shape(const Element& element) {
-  return element.ns == Namespace::svg && std::find(std::begin(kShapes), std::end(kShapes), element.name) != std::end(kShapes);
+  return element.ns == Namespace::svg &&
+         std::find(std::begin(kShapes), std::end(kShapes), element.name) != std::end(kShapes);
 }
 
 Result<Outline> outline_of(const Element& element, const LengthFrame& frame, std::size_t max_curves) {

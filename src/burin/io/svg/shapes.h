@@ -21,8 +21,8 @@ struct LengthFrame {
 
 bool is_shape(const Element& element);
 
-/// Precondition: is_shape(). A shape of size zero gives no path and one dropped point. Errors: as parse_path_data()
-/// and LengthFrame::read(), range (negative sizes).
+/// Precondition: is_shape(). A shape of size zero gives no path and one dropped point. Errors: as
+/// parse_path_data() and LengthFrame::read(), range (negative sizes).
 Result<Outline> outline_of(const Element& element, const LengthFrame& frame, std::size_t max_curves);
 
 }  // namespace burin::io::svg

@@ -52,7 +52,8 @@ Result<const CascadedStyle*> Styles::cascaded(int element) {
   for (const Attribute& attribute : e.attributes) {
     if (attribute.ns != Namespace::none) continue;
     if (attribute.name == "style") style_attribute = attribute.value;
-    if (const auto property = property_of(attribute.name)) style->apply({*property, attribute.value, false}, 0, 0);
+    if (const auto property = property_of(attribute.name))
+      style->apply({*property, attribute.value, false}, 0, 0);
   }
   if (!sheet_.empty()) {
     if (auto done = sheet_.apply(element, *style); !done) return done.error();
@@ -71,8 +72,10 @@ Result<ElementStyle> Styles::of(int element, const InheritedStyle& parent) {
   if (const auto value = declared.get(Property::color)) {
     if (const auto rgb = parse_color(*value)) style.inherited.color = *rgb;
   }
-  if (const auto value = declared.get(Property::stroke)) style.inherited.stroke = parse_paint(*value, parent.stroke);
-  if (const auto value = declared.get(Property::fill)) style.inherited.fill = parse_paint(*value, parent.fill);
+  if (const auto value = declared.get(Property::stroke))
+    style.inherited.stroke = parse_paint(*value, parent.stroke);
+  if (const auto value = declared.get(Property::fill))
+    style.inherited.fill = parse_paint(*value, parent.fill);
   if (const auto value = declared.get(Property::visibility)) {
     const std::string word = keyword(*value);
     if (word == "visible") style.inherited.visible = true;

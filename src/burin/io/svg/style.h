@@ -32,14 +32,15 @@ struct InheritedStyle {
 struct ElementStyle {
   InheritedStyle inherited;
   bool displayed = true;
-  bool clipped = false;  ///< has a clip-path or mask
+  bool clipped = false;                       ///< has a clip-path or mask
   std::optional<std::string_view> transform;  ///< of the property or the attribute
 };
 
 /// Styles of the elements of one document; what an element declares is worked out once.
 class Styles {
  public:
-  explicit Styles(const Document& document) : document_(document), sheet_(document), cache_(document.elements.size()) {}
+  explicit Styles(const Document& document)
+      : document_(document), sheet_(document), cache_(document.elements.size()) {}
 
   int skipped_rules() const { return sheet_.skipped_rules(); }
   Result<ElementStyle> of(int element, const InheritedStyle& parent);

@@ -9,7 +9,8 @@
 namespace burin::io::svg {
 namespace {
 
-/// Compound tests that a sheet may ask for: a large real drawing (10^5 elements, a class each) stays near 10^6.
+/// Compound tests that a sheet may ask for: a large real drawing (10^5 elements, a class each) stays near
+/// 10^6.
 constexpr std::int64_t kMaxWork = 100'000'000;
 constexpr std::size_t kMaxCompounds = 16;
 
@@ -18,9 +19,14 @@ struct PropertyName {
   Property property;
 };
 constexpr PropertyName kProperties[kPropertyCount] = {
-    {"color", Property::color},           {"stroke", Property::stroke},       {"fill", Property::fill},
-    {"display", Property::display},       {"visibility", Property::visibility}, {"transform", Property::transform},
-    {"clip-path", Property::clip_path},   {"mask", Property::mask},
+    {"color", Property::color},
+    {"stroke", Property::stroke},
+    {"fill", Property::fill},
+    {"display", Property::display},
+    {"visibility", Property::visibility},
+    {"transform", Property::transform},
+    {"clip-path", Property::clip_path},
+    {"mask", Property::mask},
 };
 
 std::string without_comments(std::string_view text) {
@@ -45,8 +51,10 @@ std::size_t find_outside(std::string_view text, std::string_view stops, std::siz
   for (; i < text.size(); ++i) {
     const char c = text[i];
     if (quote != '\0') {
-      if (c == '\\') ++i;
-      else if (c == quote) quote = '\0';
+      if (c == '\\')
+        ++i;
+      else if (c == quote)
+        quote = '\0';
     } else if (depth <= 0 && stops.find(c) != std::string_view::npos) {
       return i;
     } else if (c == '"' || c == '\'') {
@@ -122,8 +130,8 @@ std::vector<Declaration> parse_declarations(std::string_view text) {
 
 void CascadedStyle::apply(const Declaration& declaration, int origin, std::uint32_t specificity) {
   Slot& slot = slots_[static_cast<std::size_t>(declaration.property)];
-  const std::uint64_t rank = (declaration.important ? 1ull << 40 : 0) + (static_cast<std::uint64_t>(origin) << 32) +
-                             specificity + 1;
+  const std::uint64_t rank =
+      (declaration.important ? 1ull << 40 : 0) + (static_cast<std::uint64_t>(origin) << 32) + specificity + 1;
   if (rank < slot.rank) return;
   slot = {declaration.value, rank};
 }
@@ -228,7 +236,8 @@ bool StyleSheet::parse_compound(std::string_view text, Compound& compound, std::
       AttributeTest attribute{trim(test.substr(0, equals)), std::nullopt};
       if (equals != std::string_view::npos) {
         std::string_view value = trim(test.substr(equals + 1));
-        if (value.size() >= 2 && (value[0] == '"' || value[0] == '\'')) value = value.substr(1, value.size() - 2);
+        if (value.size() >= 2 && (value[0] == '"' || value[0] == '\''))
+          value = value.substr(1, value.size() - 2);
         attribute.value = value;
       }
       // ~=, |=, ^=, $= and *= leave their sign at the end of the name.
@@ -247,7 +256,8 @@ bool StyleSheet::parse_compound(std::string_view text, Compound& compound, std::
   return true;
 }
 
-/// Filed under the rarest key of the last compound, so that an element meets only the rules that may concern it.
+/// Filed under the rarest key of the last compound, so that an element meets only the rules that may concern
+/// it.
 void StyleSheet::index_selector(int selector) {
   const Compound& last = selectors_[static_cast<std::size_t>(selector)].compounds.back();
   if (!last.ids.empty()) {
@@ -261,8 +271,8 @@ void StyleSheet::index_selector(int selector) {
   }
 }
 
-void StyleSheet::collect(const std::unordered_map<std::string_view, std::vector<int>>& index, std::string_view key,
-                         std::vector<int>& out) const {
+void StyleSheet::collect(const std::unordered_map<std::string_view, std::vector<int>>& index,
+                         std::string_view key, std::vector<int>& out) const {
   const auto found = index.find(key);
   if (found != index.end()) out.insert(out.end(), found->second.begin(), found->second.end());
 }
@@ -289,7 +299,9 @@ Result<void> StyleSheet::apply(int element, CascadedStyle& style) {
     }
     work_left_ -= static_cast<std::int64_t>(rules_[static_cast<std::size_t>(selector.rule)].size());
   }
-  if (work_left_ <= 0) return Error{ErrorCode::range, "the style sheet is too costly to match (simpler selectors are accepted)", {}};
+  if (work_left_ <= 0)
+    return Error{
+        ErrorCode::range, "the style sheet is too costly to match (simpler selectors are accepted)", {}};
   return {};
 }
 

@@ -25,15 +25,18 @@ struct Declaration {
   std::string_view value;
   bool important = false;
 };
-/// "stroke:red; fill : none !important"; unknown properties and damaged declarations are left out, as CSS says.
+/// "stroke:red; fill : none !important"; unknown properties and damaged declarations are left out, as CSS
+/// says.
 std::vector<Declaration> parse_declarations(std::string_view text);
 
 /// Winning declarations of one element; unset ones have no value.
 class CascadedStyle {
  public:
-  std::optional<std::string_view> get(Property property) const { return slots_[static_cast<std::size_t>(property)].value; }
-  /// A later or stronger declaration replaces the one before. `origin`: 0 presentation attribute, 1 style sheet,
-  /// 2 style attribute.
+  std::optional<std::string_view> get(Property property) const {
+    return slots_[static_cast<std::size_t>(property)].value;
+  }
+  /// A later or stronger declaration replaces the one before. `origin`: 0 presentation attribute, 1 style
+  /// sheet, 2 style attribute.
   void apply(const Declaration& declaration, int origin, std::uint32_t specificity);
 
  private:
@@ -44,8 +47,9 @@ class CascadedStyle {
   std::array<Slot, kPropertyCount> slots_;
 };
 
-/// Rules of all <style> elements. Selectors: element, *, .class, #id, [attribute], [attribute="value"], combined,
-/// with descendant and child combinators. Rules with other selectors and @-rules are skipped and counted.
+/// Rules of all <style> elements. Selectors: element, *, .class, #id, [attribute], [attribute="value"],
+/// combined, with descendant and child combinators. Rules with other selectors and @-rules are skipped and
+/// counted.
 class StyleSheet {
  public:
   /// Comments are removed first. `document` must outlive the sheet.
@@ -53,7 +57,8 @@ class StyleSheet {
 
   int skipped_rules() const { return skipped_; }
   bool empty() const { return selectors_.empty(); }
-  /// Applies the rules that match. Error (range): the sheet asks for more matching work than any real drawing.
+  /// Applies the rules that match. Error (range): the sheet asks for more matching work than any real
+  /// drawing.
   Result<void> apply(int element, CascadedStyle& style);
 
  private:

@@ -19,9 +19,9 @@ struct Function {
   std::size_t min_count, max_count;
 };
 constexpr Function kFunctions[] = {
-    {"matrix", 6, 6}, {"translate", 1, 2}, {"translatex", 1, 1}, {"translatey", 1, 1}, {"scale", 1, 2},
-    {"scalex", 1, 1}, {"scaley", 1, 1},    {"rotate", 1, 3},     {"skewx", 1, 1},      {"skewy", 1, 1},
-    {"skew", 1, 2},
+    {"matrix", 6, 6}, {"translate", 1, 2}, {"translatex", 1, 1}, {"translatey", 1, 1},
+    {"scale", 1, 2},  {"scalex", 1, 1},    {"scaley", 1, 1},     {"rotate", 1, 3},
+    {"skewx", 1, 1},  {"skewy", 1, 1},     {"skew", 1, 2},
 };
 
 /// Multiples of 90 degrees are exact, so that rotated rectangles keep parallel sides.
@@ -97,7 +97,8 @@ Result<Affine2> one_function(Scanner& scan) {
     if (!value) return bad(scan, "a number is expected in " + name + "()");
     const double factor = unit_factor(scan.word());
     if (factor == 0 || scan.peek() == '%') {
-      return Error{ErrorCode::unsupported, "unit in transform " + name + "() (px, deg, rad, grad, turn or none)", {}};
+      return Error{
+          ErrorCode::unsupported, "unit in transform " + name + "() (px, deg, rad, grad, turn or none)", {}};
     }
     values.push_back(*value * factor);
     if (values.size() > function->max_count) break;
@@ -105,8 +106,8 @@ Result<Affine2> one_function(Scanner& scan) {
   }
   const bool pair_missing = name == "rotate" && values.size() == 2;
   if (values.size() < function->min_count || values.size() > function->max_count || pair_missing) {
-    return bad(scan, name + "() has the wrong number of values (" + std::to_string(function->min_count) + " to " +
-                         std::to_string(function->max_count) + ")");
+    return bad(scan, name + "() has the wrong number of values (" + std::to_string(function->min_count) +
+                         " to " + std::to_string(function->max_count) + ")");
   }
   if (scan.peek() != ')') return bad(scan, ") is expected");
   scan.skip();

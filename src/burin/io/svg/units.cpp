@@ -19,8 +19,8 @@ struct UnitName {
   std::string_view name;
   Unit unit;
 };
-constexpr UnitName kUnits[] = {{"", Unit::number}, {"px", Unit::px}, {"pt", Unit::pt}, {"pc", Unit::pc},
-                               {"mm", Unit::mm},   {"cm", Unit::cm}, {"in", Unit::in}, {"q", Unit::q},
+constexpr UnitName kUnits[] = {{"", Unit::number}, {"px", Unit::px},  {"pt", Unit::pt}, {"pc", Unit::pc},
+                               {"mm", Unit::mm},   {"cm", Unit::cm},  {"in", Unit::in}, {"q", Unit::q},
                                {"em", Unit::em},   {"rem", Unit::em}, {"ex", Unit::ex}, {"%", Unit::percent}};
 
 }  // namespace
@@ -45,19 +45,29 @@ std::optional<Length> parse_length(std::string_view text) {
 double length_mm(Length length, double px_per_inch) {
   const double mm_per_px = kMmPerInch / px_per_inch;
   switch (length.unit) {
-    case Unit::mm: return length.value;
-    case Unit::cm: return length.value * 10;
-    case Unit::q: return length.value / 4;
-    case Unit::in: return length.value * kMmPerInch;
-    case Unit::pt: return length.value * kMmPerInch / 72;
-    case Unit::pc: return length.value * kMmPerInch / 6;
-    case Unit::em: return length.value * kPxPerEm * mm_per_px;
-    case Unit::ex: return length.value * kPxPerEm / 2 * mm_per_px;
-    default: return length.value * mm_per_px;
+    case Unit::mm:
+      return length.value;
+    case Unit::cm:
+      return length.value * 10;
+    case Unit::q:
+      return length.value / 4;
+    case Unit::in:
+      return length.value * kMmPerInch;
+    case Unit::pt:
+      return length.value * kMmPerInch / 72;
+    case Unit::pc:
+      return length.value * kMmPerInch / 6;
+    case Unit::em:
+      return length.value * kPxPerEm * mm_per_px;
+    case Unit::ex:
+      return length.value * kPxPerEm / 2 * mm_per_px;
+    default:
+      return length.value * mm_per_px;
   }
 }
 
-std::optional<double> length_in_user_units(Length length, double px_per_inch, const Viewport& viewport, Axis axis) {
+std::optional<double> length_in_user_units(Length length, double px_per_inch, const Viewport& viewport,
+                                           Axis axis) {
   if (length.unit == Unit::number || length.unit == Unit::px) return length.value;
   if (length.unit != Unit::percent) return length_mm(length, px_per_inch) * px_per_inch / kMmPerInch;
   if (!viewport.known) return std::nullopt;

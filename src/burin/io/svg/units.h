@@ -33,7 +33,8 @@ struct Viewport {
 enum class Axis { x, y, both };
 
 /// A length in user units (user unit = px). Nothing for a percentage of an unknown viewport.
-std::optional<double> length_in_user_units(Length length, double px_per_inch, const Viewport& viewport, Axis axis);
+std::optional<double> length_in_user_units(Length length, double px_per_inch, const Viewport& viewport,
+                                           Axis axis);
 
 struct ViewBox {
   double x = 0, y = 0, width = 0, height = 0;
@@ -42,9 +43,9 @@ struct ViewBox {
 std::optional<ViewBox> parse_view_box(std::string_view text);
 
 struct AspectRatio {
-  bool keep = true;                    ///< false: none
-  double align_x = 0.5, align_y = 0.5; ///< 0 min, 0.5 mid, 1 max
-  bool slice = false;                  ///< cover the viewport instead of fitting into it
+  bool keep = true;                     ///< false: none
+  double align_x = 0.5, align_y = 0.5;  ///< 0 min, 0.5 mid, 1 max
+  bool slice = false;                   ///< cover the viewport instead of fitting into it
 };
 /// "xMidYMid meet" and so on; the default for "" and for what cannot be read, as browsers do.
 AspectRatio parse_aspect_ratio(std::string_view text);

@@ -15,22 +15,32 @@ using geom::Affine2;
 
 namespace {
 
-/// A visit costs one unit and one more for so many bytes of attributes, so that the whole work is bounded by the
-/// size of the file plus max_entities, however often <use> refers to a long element.
+/// A visit costs one unit and one more for so many bytes of attributes, so that the whole work is bounded by
+/// the size of the file plus max_entities, however often <use> refers to a long element.
 constexpr std::size_t kBytesPerUnit = 64;
 /// Warnings of one kind that are listed one by one; the rest is counted.
 constexpr int kMaxWarnings = 100;
 
 constexpr std::string_view kContainers[] = {"g", "a"};
 /// Drawn by browsers, but nothing to cut.
-constexpr std::string_view kNoCurves[] = {"text",  "image", "foreignObject", "flowRoot", "video",
+constexpr std::string_view kNoCurves[] = {"text",  "image",  "foreignObject", "flowRoot", "video",
                                           "audio", "canvas", "iframe",        "object",   "embed"};
 /// Never drawn where they stand.
-constexpr std::string_view kDefinitions[] = {
-    "defs",   "symbol", "clipPath",       "mask",           "pattern", "marker", "metadata",       "title",  "desc",
-    "style",  "script", "linearGradient", "radialGradient", "filter",  "view",   "cursor",         "font",   "font-face",
-    "animate", "set",   "animateMotion",  "animateTransform", "animateColor", "color-profile",     "stop",   "hatch",
-    "meshgradient", "solidcolor", "glyph", "discard"};
+constexpr std::string_view kDefinitions[] = {"defs",           "symbol",
+                                             "clipPath",       "mask",
+                                             "pattern",        "marker",
+                                             "metadata",       "title",
+                                             "desc",           "style",
+                                             "script",         "linearGradient",
+                                             "radialGradient", "filter",
+                                             "view",           "cursor",
+                                             "font",           "font-face",
+                                             "animate",        "set",
+                                             "animateMotion",  "animateTransform",
+                                             "animateColor",   "color-profile",
+                                             "stop",           "hatch",
+                                             "meshgradient",   "solidcolor",
+                                             "glyph",          "discard"};
 
 template <std::size_t N>
 bool contains(const std::string_view (&names)[N], std::string_view name) {
@@ -56,7 +66,8 @@ bool conditions_met(const Element& element, bool in_switch) {
 
 }  // namespace
 
-Walker::Walker(const Document& document, const Page& page, const ReadOptions& options, Diagnostics& diagnostics)
+Walker::Walker(const Document& document, const Page& page, const ReadOptions& options,
+               Diagnostics& diagnostics)
     : document_(document),
       page_(page),
       options_(options),
@@ -97,7 +108,8 @@ Result<void> Walker::charge(const Element& element) {
   const std::size_t cost = 1 + element.attribute_bytes / kBytesPerUnit;
   if (cost > work_left_) {
     return Error{ErrorCode::range,
-                 "more elements after the expansion of <use> than the limit of " + std::to_string(options_.max_entities),
+                 "more elements after the expansion of <use> than the limit of " +
+                     std::to_string(options_.max_entities),
                  where(element)};
   }
   work_left_ -= cost;
@@ -129,7 +141,9 @@ Result<void> Walker::visit(int index, const Context& outer, const UseSize* use_s
   if (contains(kDefinitions, element.name) && !(as_use_target && element.name == "symbol")) return {};
   if (outer.depth >= options_.max_depth) {
     return Error{ErrorCode::range,
-                 "elements nested deeper than the limit of " + std::to_string(options_.max_depth), where(element)};
+                 "elements nested deeper than the limit of " + std::to_string(options_.max_depth) +
+                     " (flatter groups are accepted)",
+                 where(element)};
   }
   auto entered = enter(index, outer);
   if (!entered) return entered.error();
@@ -182,13 +196,16 @@ Result<void> Walker::enter_viewport(int index, Context& context, const UseSize* 
   const std::string_view box_text = trim(element.get("viewBox"));
   const auto box = parse_view_box(box_text);
   if (!box_text.empty() && !box) {
-    return Error{ErrorCode::syntax, "viewBox (four numbers, width and height above 0, are accepted)", where(element)};
+    return Error{ErrorCode::syntax, "viewBox (four numbers, width and height above 0, are accepted)",
+                 where(element)};
   }
   // Without a size: all of the outer viewport, or the viewBox as it is where that is not known.
   const auto size = [&](std::string_view name, Axis axis, double whole, double of_box) -> Result<double> {
     Element own;  // the size of <use> goes before the own one
     own.attributes.push_back({Namespace::none, name, element.get(name)});
-    const std::string_view given = use_size == nullptr ? "" : axis == Axis::x ? use_size->width : use_size->height;
+    const std::string_view given = use_size == nullptr ? ""
+                                   : axis == Axis::x   ? use_size->width
+                                                       : use_size->height;
     if (!given.empty() && given != "auto") own.attributes[0].value = given;
     return frame(context).read(own, name, axis, outer.known ? whole : box ? of_box : 0);
   };
@@ -228,14 +245,17 @@ Result<void> Walker::visit_use(int index, const Context& context) {
     const bool other_file = !href.empty() && href[0] != '#';
     left_out_limited("missing_reference",
                      "<use> of '" + std::string(href.substr(0, 80)) + "' " +
-                         (other_file ? "refers to another file" : "refers to nothing in this file") + "; not drawn",
+                         (other_file ? "refers to another file" : "refers to nothing in this file") +
+                         "; not drawn",
                      element);
     return {};
   }
   char& active = active_[static_cast<std::size_t>(target)];
   if (active != 0) {
-    return Error{ErrorCode::syntax, "<use> draws itself through '" + std::string(href.substr(0, 80)) + "' (a reference without a circle)",
-                 where(element)};
+    return Error{
+        ErrorCode::syntax,
+        "<use> draws itself through '" + std::string(href.substr(0, 80)) + "' (a reference without a circle)",
+        where(element)};
   }
   const auto x = frame(context).read(element, "x", Axis::x, 0);
   if (!x) return located(x.error(), element);
@@ -256,10 +276,13 @@ Result<void> Walker::draw(int index, const Context& context) {
   const Element& element = at(index);
   if (context.hidden || !context.style.visible) return ignore(element, "hidden"), Result<void>();
   if (drawing_.entities.size() >= options_.max_entities) {
-    return Error{ErrorCode::range, "more entities than the limit of " + std::to_string(options_.max_entities), where(element)};
+    return Error{ErrorCode::range, "more entities than the limit of " + std::to_string(options_.max_entities),
+                 where(element)};
   }
+  if (context.map.determinant() == 0) return ignore(element, "flattened by its transform"), Result<void>();
   // As many curves as entities: both cost the same order of memory.
-  auto outline = outline_of(element, frame(context), options_.max_entities - std::min(curve_count_, options_.max_entities));
+  auto outline = outline_of(element, frame(context),
+                            options_.max_entities - std::min(curve_count_, options_.max_entities));
   if (!outline) return located(std::move(outline).error(), element);
   auto placed = place_outline(context.map, std::move(outline->paths));
   if (!placed) return located(std::move(placed).error(), element);
@@ -271,7 +294,8 @@ Result<void> Walker::draw(int index, const Context& context) {
   if (!context.style.painted()) ++unpainted_;
   Entity entity;
   entity.kind = element.name;
-  entity.id = context.id_prefix + std::string(context.id_prefix.empty() || !element.id().empty() ? element.id() : element.name);
+  entity.id = context.id_prefix +
+              std::string(context.id_prefix.empty() || !element.id().empty() ? element.id() : element.name);
   entity.line = element.line;
   entity.layer = context.layer;
   entity.color = context.style.entity_color();
@@ -285,7 +309,9 @@ void Walker::ignore(const Element& element, const char* why) {
   ++drawing_.ignored[std::string(element.name) + (why == nullptr ? "" : std::string(" (") + why + ")")];
 }
 
-bool Walker::within_limit(const std::string& code) { return ++warned_[code] <= kMaxWarnings; }
+bool Walker::within_limit(const std::string& code) {
+  return ++warned_[code] <= kMaxWarnings;
+}
 
 void Walker::info_limited(const std::string& code, const std::string& message, const Element& element) {
   if (within_limit(code)) diagnostics_.info(code, message, where(element));
@@ -303,13 +329,21 @@ void Walker::report_summary() {
     }
   }
   if (unpainted_ > 0) {
-    diagnostics_.info("not_painted", std::to_string(unpainted_) + " elements have neither stroke nor fill; they were read", file);
+    diagnostics_.info("not_painted",
+                      std::to_string(unpainted_) + " elements have neither stroke nor fill; they were read",
+                      file);
   }
   if (clipped_ > 0) {
-    diagnostics_.info("clip_ignored", std::to_string(clipped_) + " clip paths or masks were not applied: their contents were read in full", file);
+    diagnostics_.info(
+        "clip_ignored",
+        std::to_string(clipped_) + " clip paths or masks were not applied: their contents were read in full",
+        file);
   }
   if (styles_.skipped_rules() > 0) {
-    diagnostics_.info("css_skipped", std::to_string(styles_.skipped_rules()) + " rules of the style sheet use selectors or @-rules that are not applied", file);
+    diagnostics_.info("css_skipped",
+                      std::to_string(styles_.skipped_rules()) +
+                          " rules of the style sheet use selectors or @-rules that are not applied",
+                      file);
   }
 }
 
