@@ -22,9 +22,6 @@ constexpr std::size_t kBytesPerUnit = 64;
 constexpr int kMaxWarnings = 100;
 
 constexpr std::string_view kContainers[] = {"g", "a"};
-/// Drawn by browsers, but nothing to cut.
-constexpr std::string_view kNoCurves[] = {"text",  "image",  "foreignObject", "flowRoot", "video",
-                                          "audio", "canvas", "iframe",        "object",   "embed"};
 /// Never drawn where they stand.
 constexpr std::string_view kDefinitions[] = {"defs",           "symbol",
                                              "clipPath",       "mask",
@@ -159,6 +156,7 @@ Result<void> Walker::visit(int index, const Context& outer, const UseSize* use_s
     if (element.name == "g") enter_group(element, context);
     return visit_children(index, context);
   }
+  // text, image, foreignObject and whatever else browsers may draw: nothing to cut.
   ignore(element, context.hidden ? "hidden" : nullptr);
   return {};
 }
