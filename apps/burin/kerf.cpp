@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "burin/base/text.h"
 #include "cli.h"
@@ -160,8 +161,8 @@ Result<void> run_learn(const KerfOptions& options, const std::string& runs, Sess
   if (!report) return report.error();
 
   session.report.parameters["db"] = path;
-  Json& models = session.report.extra["models"] = Json::array();
-  Json& rejected = session.report.extra["rejected"] = Json::array();
+  // Built apart: a new key moves the values of an ordered object.
+  Json models = Json::array(), rejected = Json::array();
   int accepted = 0;
   std::string text;
   for (const KerfModel& m : report->models) {
@@ -177,6 +178,8 @@ Result<void> run_learn(const KerfOptions& options, const std::string& runs, Sess
     rejected.push_back({{"line", run.line}, {"reason", run.reason}});
     session.diagnostics.info("run_rejected", "not used: " + run.reason, {.file = runs, .line = run.line});
   }
+  session.report.extra["models"] = std::move(models);
+  session.report.extra["rejected"] = std::move(rejected);
   session.report.counts["models"] = report->models.size();
   session.report.counts["runs_accepted"] = accepted;
   session.report.counts["runs_rejected"] = report->rejected.size();
