@@ -62,7 +62,8 @@ TEST(Text, NearestWord) {
 }
 
 TEST(File, WriteReplacesWholeAndLeavesNothingOnFailure) {
-  const std::string folder = std::filesystem::temp_directory_path() / ("burin-base-" + std::to_string(getpid()));
+  const std::string folder =
+      std::filesystem::temp_directory_path() / ("burin-base-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   const std::string path = folder + "/out.txt";
   ASSERT_TRUE(write_file(path, "one").ok());

@@ -14,7 +14,8 @@
 
 namespace burin {
 
-/// `info`: repaired or assumed, exit code 0. `left_out`: something was not done that the user must know, exit code 3.
+/// `info`: repaired or assumed, exit code 0. `left_out`: something was not done that the user must know, exit
+/// code 3.
 enum class Severity { info, left_out };
 
 struct Warning {
@@ -38,7 +39,8 @@ class Diagnostics {
     add({Severity::left_out, std::move(code), std::move(message), std::move(where), std::nullopt});
   }
   void left_out_at(std::string code, std::string message, double x_mm, double y_mm, Where where = {}) {
-    add({Severity::left_out, std::move(code), std::move(message), std::move(where), std::array{x_mm, y_mm, 0.0}});
+    add({Severity::left_out, std::move(code), std::move(message), std::move(where),
+         std::array{x_mm, y_mm, 0.0}});
   }
 
   const std::vector<Warning>& warnings() const { return warnings_; }

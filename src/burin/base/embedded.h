@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data files that are part of the program (machines, dialects, the built-in kerf table): made by burin_embed().
+// Data files that are part of the program (machines, dialects, the built-in kerf table): made by
+// burin_embed().
 #pragma once
 
 #include <string_view>

@@ -23,8 +23,8 @@ enum class ErrorCode {
 /// Where: FILE:LINE:COLUMN for texts, FILE:ENTITY for drawings. Fields that do not apply stay empty or 0.
 struct Where {
   std::string file;
-  int line = 0;    ///< from 1
-  int column = 0;  ///< from 1
+  int line = 0;        ///< from 1
+  int column = 0;      ///< from 1
   std::string entity;  ///< handle or id in a drawing, e.g. "LINE 2F" or "path#outline"
 
   /// "file:12:5", "file:12", "file: LINE 2F", or "" when nothing is known.

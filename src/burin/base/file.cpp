@@ -56,7 +56,8 @@ Result<void> write_file(const std::string& path, std::string_view content) {
   // A device or a pipe cannot be renamed onto: write it in place.
   struct stat info {};
   const bool exists = stat(path.c_str(), &info) == 0;
-  if (exists && S_ISDIR(info.st_mode)) return Error{ErrorCode::io, "is a folder (a file is wanted)", {.file = path}};
+  if (exists && S_ISDIR(info.st_mode))
+    return Error{ErrorCode::io, "is a folder (a file is wanted)", {.file = path}};
   const bool in_place = exists && !S_ISREG(info.st_mode);
   std::string target = path;
   int fd = -1;

@@ -9,8 +9,8 @@
 
 namespace burin {
 
-/// Fixed-point decimal text, rounded half away from zero on the decimal value of `value`, trailing zeros and a
-/// trailing point removed, never "-0". `decimals` 0..12.
+/// Fixed-point decimal text, rounded half away from zero on the decimal value of `value`, trailing zeros and
+/// a trailing point removed, never "-0". `decimals` 0..12.
 std::string format_fixed(double value, int decimals);
 
 /// The shortest text that reads back as the same double.
@@ -21,7 +21,8 @@ std::string format_shortest(double value);
 std::optional<double> parse_double(std::string_view text);
 std::optional<long long> parse_integer(std::string_view text);
 
-/// The candidate with the smallest edit distance to `word`, or "" when none is near (more than a third differs).
+/// The candidate with the smallest edit distance to `word`, or "" when none is near (more than a third
+/// differs).
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 
 std::string_view trim(std::string_view text);

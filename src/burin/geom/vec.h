@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points and vectors of the plane and of space, as different types: a point has a place, a vector a direction and
-// a length. mm, right-handed frames. Everything here is constexpr-cheap and never fails.
+// Points and vectors of the plane and of space, as different types: a point has a place, a vector a direction
+// and a length. mm, right-handed frames. Everything here is constexpr-cheap and never fails.
 #pragma once
 
 #include <algorithm>
@@ -13,52 +13,104 @@ struct Vec2 {
   double x = 0, y = 0;
   bool operator==(const Vec2&) const = default;
 };
-constexpr Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
-constexpr Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
-constexpr Vec2 operator-(Vec2 a) { return {-a.x, -a.y}; }
-constexpr Vec2 operator*(double s, Vec2 a) { return {s * a.x, s * a.y}; }
-constexpr Vec2 operator*(Vec2 a, double s) { return s * a; }
-constexpr Vec2 operator/(Vec2 a, double s) { return {a.x / s, a.y / s}; }
-constexpr double dot(Vec2 a, Vec2 b) { return a.x * b.x + a.y * b.y; }
+constexpr Vec2 operator+(Vec2 a, Vec2 b) {
+  return {a.x + b.x, a.y + b.y};
+}
+constexpr Vec2 operator-(Vec2 a, Vec2 b) {
+  return {a.x - b.x, a.y - b.y};
+}
+constexpr Vec2 operator-(Vec2 a) {
+  return {-a.x, -a.y};
+}
+constexpr Vec2 operator*(double s, Vec2 a) {
+  return {s * a.x, s * a.y};
+}
+constexpr Vec2 operator*(Vec2 a, double s) {
+  return s * a;
+}
+constexpr Vec2 operator/(Vec2 a, double s) {
+  return {a.x / s, a.y / s};
+}
+constexpr double dot(Vec2 a, Vec2 b) {
+  return a.x * b.x + a.y * b.y;
+}
 /// z component of the cross product: positive when b lies to the left of a.
-constexpr double cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
-constexpr double norm2(Vec2 a) { return dot(a, a); }
-inline double norm(Vec2 a) { return std::sqrt(dot(a, a)); }
+constexpr double cross(Vec2 a, Vec2 b) {
+  return a.x * b.y - a.y * b.x;
+}
+constexpr double norm2(Vec2 a) {
+  return dot(a, a);
+}
+inline double norm(Vec2 a) {
+  return std::sqrt(dot(a, a));
+}
 /// Unit vector; (0, 0) stays (0, 0).
 inline Vec2 unit(Vec2 a) {
   const double n = norm(a);
   return n > 0 ? a / n : Vec2{};
 }
 /// A quarter turn to the left, to the right.
-constexpr Vec2 left(Vec2 a) { return {-a.y, a.x}; }
-constexpr Vec2 right(Vec2 a) { return {a.y, -a.x}; }
+constexpr Vec2 left(Vec2 a) {
+  return {-a.y, a.x};
+}
+constexpr Vec2 right(Vec2 a) {
+  return {a.y, -a.x};
+}
 
 struct Point2 {
   double x = 0, y = 0;
   bool operator==(const Point2&) const = default;
 };
-constexpr Vec2 operator-(Point2 a, Point2 b) { return {a.x - b.x, a.y - b.y}; }
-constexpr Point2 operator+(Point2 a, Vec2 v) { return {a.x + v.x, a.y + v.y}; }
-constexpr Point2 operator-(Point2 a, Vec2 v) { return {a.x - v.x, a.y - v.y}; }
-constexpr Point2 lerp(Point2 a, Point2 b, double t) { return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)}; }
-inline double distance(Point2 a, Point2 b) { return norm(a - b); }
-constexpr double distance2(Point2 a, Point2 b) { return norm2(a - b); }
+constexpr Vec2 operator-(Point2 a, Point2 b) {
+  return {a.x - b.x, a.y - b.y};
+}
+constexpr Point2 operator+(Point2 a, Vec2 v) {
+  return {a.x + v.x, a.y + v.y};
+}
+constexpr Point2 operator-(Point2 a, Vec2 v) {
+  return {a.x - v.x, a.y - v.y};
+}
+constexpr Point2 lerp(Point2 a, Point2 b, double t) {
+  return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
+}
+inline double distance(Point2 a, Point2 b) {
+  return norm(a - b);
+}
+constexpr double distance2(Point2 a, Point2 b) {
+  return norm2(a - b);
+}
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
   bool operator==(const Vec3&) const = default;
 };
-constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-constexpr Vec3 operator-(Vec3 a) { return {-a.x, -a.y, -a.z}; }
-constexpr Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
-constexpr Vec3 operator*(Vec3 a, double s) { return s * a; }
-constexpr Vec3 operator/(Vec3 a, double s) { return {a.x / s, a.y / s, a.z / s}; }
-constexpr double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+constexpr Vec3 operator+(Vec3 a, Vec3 b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+constexpr Vec3 operator-(Vec3 a, Vec3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+constexpr Vec3 operator-(Vec3 a) {
+  return {-a.x, -a.y, -a.z};
+}
+constexpr Vec3 operator*(double s, Vec3 a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+constexpr Vec3 operator*(Vec3 a, double s) {
+  return s * a;
+}
+constexpr Vec3 operator/(Vec3 a, double s) {
+  return {a.x / s, a.y / s, a.z / s};
+}
+constexpr double dot(Vec3 a, Vec3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 constexpr Vec3 cross(Vec3 a, Vec3 b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+inline double norm(Vec3 a) {
+  return std::sqrt(dot(a, a));
+}
 inline Vec3 unit(Vec3 a) {
   const double n = norm(a);
   return n > 0 ? a / n : Vec3{};
@@ -68,13 +120,25 @@ struct Point3 {
   double x = 0, y = 0, z = 0;
   bool operator==(const Point3&) const = default;
 };
-constexpr Vec3 operator-(Point3 a, Point3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-constexpr Point3 operator+(Point3 a, Vec3 v) { return {a.x + v.x, a.y + v.y, a.z + v.z}; }
-constexpr Point3 operator-(Point3 a, Vec3 v) { return {a.x - v.x, a.y - v.y, a.z - v.z}; }
-inline double distance(Point3 a, Point3 b) { return norm(a - b); }
+constexpr Vec3 operator-(Point3 a, Point3 b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+constexpr Point3 operator+(Point3 a, Vec3 v) {
+  return {a.x + v.x, a.y + v.y, a.z + v.z};
+}
+constexpr Point3 operator-(Point3 a, Vec3 v) {
+  return {a.x - v.x, a.y - v.y, a.z - v.z};
+}
+inline double distance(Point3 a, Point3 b) {
+  return norm(a - b);
+}
 
-constexpr Point2 xy(Point3 p) { return {p.x, p.y}; }
-constexpr Point3 at_z(Point2 p, double z) { return {p.x, p.y, z}; }
+constexpr Point2 xy(Point3 p) {
+  return {p.x, p.y};
+}
+constexpr Point3 at_z(Point2 p, double z) {
+  return {p.x, p.y, z};
+}
 
 /// Axis-parallel box; empty as constructed.
 struct Box2 {
@@ -116,7 +180,11 @@ constexpr Affine2 operator*(const Affine2& outer, const Affine2& inner) {
 }
 
 inline constexpr double kPi = 3.14159265358979323846;
-constexpr double radians(double degrees) { return degrees * (kPi / 180.0); }
-constexpr double degrees(double radians) { return radians * (180.0 / kPi); }
+constexpr double radians(double degrees) {
+  return degrees * (kPi / 180.0);
+}
+constexpr double degrees(double radians) {
+  return radians * (180.0 / kPi);
+}
 
 }  // namespace burin::geom

@@ -50,7 +50,8 @@ struct Nurbs2 {
 
 using Curve2 = std::variant<Line2, Arc2, EllipseArc2, Nurbs2>;
 
-/// Checks shape, finiteness and ranges; an error (geometry) says what is wrong. Importers call it on everything.
+/// Checks shape, finiteness and ranges; an error (geometry) says what is wrong. Importers call it on
+/// everything.
 Result<void> validate(const Curve2& curve);
 
 Point2 point_at(const Curve2& curve, double t);
@@ -59,10 +60,14 @@ struct Derivatives2 {
   Vec2 d1, d2;  ///< with respect to t in [0, 1]
 };
 Derivatives2 derivatives_at(const Curve2& curve, double t);
-inline Point2 start_point(const Curve2& curve) { return point_at(curve, 0.0); }
-inline Point2 end_point(const Curve2& curve) { return point_at(curve, 1.0); }
-/// Unit tangent in the direction of growing t; taken as the limit where the first derivative vanishes (coincident
-/// control points at an end), (0, 0) only for a curve that is a single point.
+inline Point2 start_point(const Curve2& curve) {
+  return point_at(curve, 0.0);
+}
+inline Point2 end_point(const Curve2& curve) {
+  return point_at(curve, 1.0);
+}
+/// Unit tangent in the direction of growing t; taken as the limit where the first derivative vanishes
+/// (coincident control points at an end), (0, 0) only for a curve that is a single point.
 Vec2 tangent_at(const Curve2& curve, double t);
 
 Curve2 reversed(const Curve2& curve);
@@ -75,16 +80,16 @@ Box2 bounds(const Curve2& curve);
 /// Arc length within `tolerance` mm.
 double length(const Curve2& curve, double tolerance = 1e-6);
 
-/// Splits a NURBS curve into rational Bezier pieces (degree + 1 points each, clamped, knots 0..0 1..1), in order;
-/// zero-length knot spans give no piece.
+/// Splits a NURBS curve into rational Bezier pieces (degree + 1 points each, clamped, knots 0..0 1..1), in
+/// order; zero-length knot spans give no piece.
 std::vector<Nurbs2> bezier_pieces(const Nurbs2& curve);
 
-/// Parameters strictly inside (0, 1) at which the tangent turns by more than `tangent_rad` at once (knots of full
-/// multiplicity, cusps, coincident control points): where step 1 of the offset splits a curve.
+/// Parameters strictly inside (0, 1) at which the tangent turns by more than `tangent_rad` at once (knots of
+/// full multiplicity, cusps, coincident control points): where step 1 of the offset splits a curve.
 std::vector<double> corner_parameters(const Curve2& curve, double tangent_rad);
 
-/// Interpolates points by a cubic spline (chord-length parameters, natural ends unless end tangents are given;
-/// closed: periodic with C2 continuity), as CAD systems do for DXF splines that hold fit points only.
+/// Interpolates points by a cubic spline (chord-length parameters, natural ends unless end tangents are
+/// given; closed: periodic with C2 continuity), as CAD systems do for DXF splines that hold fit points only.
 /// Errors (geometry): fewer than 2 different points.
 Result<Nurbs2> interpolate(const std::vector<Point2>& fit_points, bool closed, Vec2 start_tangent = {},
                            Vec2 end_tangent = {});
