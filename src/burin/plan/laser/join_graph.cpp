@@ -88,50 +88,76 @@ class Resolver {
     }
   }
 
-  /// Uses again what was drawn twice where that makes the number of ends even, so that contours close: the
-  /// spare runs whose sum (mod 2) is the set of odd nodes, along a spanning forest of the spare runs. True
+  struct SpareEnds {  ///< ends of the spare runs by node
+    std::vector<std::uint32_t> first, ends;
+  };
+  SpareEnds spare_ends() const {
+    SpareEnds s;
+    s.first.assign(nodes_.count + 1, 0);
+    const auto begin = static_cast<std::uint32_t>(2 * runs_.base_count);
+    const auto end_of_all = static_cast<std::uint32_t>(2 * runs_.list.size());
+    for (std::uint32_t end = begin; end < end_of_all; ++end) ++s.first[node(end) + 1];
+    for (std::size_t i = 1; i < s.first.size(); ++i) s.first[i] += s.first[i - 1];
+    s.ends.resize(s.first.back());
+    std::vector<std::uint32_t> fill(s.first.begin(), s.first.end() - 1);
+    for (std::uint32_t end = begin; end < end_of_all; ++end) s.ends[fill[node(end)]++] = end;
+    return s;
+  }
+
+  /// Uses again what was drawn twice where the number of ends is odd otherwise, so that contours close. True
   /// when any is used.
   bool choose_spares() {
     std::vector<bool> odd(nodes_.count, false);
     for (const std::uint32_t end : ends_) {
       if (!bridge_[end / 2]) odd[node(end)] = !odd[node(end)];
     }
-    std::vector<std::uint32_t> by_node;
-    std::vector<std::uint32_t> at(nodes_.count + 1, 0);
-    const auto begin = static_cast<std::uint32_t>(2 * runs_.base_count);
-    const auto end_of_all = static_cast<std::uint32_t>(2 * runs_.list.size());
-    for (std::uint32_t end = begin; end < end_of_all; ++end) ++at[node(end) + 1];
-    for (std::size_t i = 1; i < at.size(); ++i) at[i] += at[i - 1];
-    by_node.resize(at.back());
-    std::vector<std::uint32_t> fill(at.begin(), at.end() - 1);
-    for (std::uint32_t end = begin; end < end_of_all; ++end) by_node[fill[node(end)]++] = end;
-
+    const SpareEnds spare = spare_ends();
     bool any = false;
     std::vector<bool> seen(nodes_.count, false);
-    // Roots: odd nodes first, so that what cannot be evened stays where it was.
-    for (const bool from_odd : {true, false}) {
-      for (std::uint32_t root = 0; root < nodes_.count; ++root) {
-        if (seen[root] || odd[root] != from_odd || at[root] == at[root + 1]) continue;
-        seen[root] = true;
-        std::vector<std::uint32_t> tree;  // ends by which nodes were reached, breadth first
-        std::vector<std::uint32_t> queue{root};
-        for (std::size_t q = 0; q < queue.size(); ++q) {
-          for (std::uint32_t k = at[queue[q]]; k < at[queue[q] + 1]; ++k) {
-            const std::uint32_t to = node(by_node[k] ^ 1U);
-            if (seen[to]) continue;
-            seen[to] = true;
-            tree.push_back(by_node[k] ^ 1U);
-            queue.push_back(to);
-          }
-        }
-        for (std::size_t k = tree.size(); k-- > 0;) {
-          const std::uint32_t leaf = node(tree[k]), parent = node(tree[k] ^ 1U);
-          if (!odd[leaf]) continue;
-          odd[leaf] = false;
-          odd[parent] = !odd[parent];
-          result_.used[tree[k] / 2] = any = true;
+    // Roots: odd nodes first, so that what cannot be evened stays where it was; parts of the drawing without
+    // odd nodes need nothing.
+    for (std::uint32_t root = 0; root < nodes_.count; ++root) {
+      if (seen[root] || !odd[root] || spare.first[root] == spare.first[root + 1]) continue;
+      seen[root] = true;
+      std::vector<std::uint32_t> tree;  // ends by which nodes were reached, breadth first
+      std::vector<std::uint32_t> queue{root};
+      for (std::size_t q = 0; q < queue.size(); ++q) {
+        for (std::uint32_t k = spare.first[queue[q]]; k < spare.first[queue[q] + 1]; ++k) {
+          const std::uint32_t to = node(spare.ends[k] ^ 1U);
+          if (seen[to]) continue;
+          seen[to] = true;
+          tree.push_back(spare.ends[k] ^ 1U);
+          queue.push_back(to);
         }
       }
+      any = use_all(queue, spare, odd) || use_some(tree, odd) || any;
+    }
+    return any;
+  }
+
+  /// All spare runs among these nodes, when every node is even then: cells side by side, each drawn in full.
+  bool use_all(const std::vector<std::uint32_t>& group, const SpareEnds& spare,
+               const std::vector<bool>& odd) {
+    const bool even = std::all_of(group.begin(), group.end(), [&](std::uint32_t at) {
+      return ((spare.first[at + 1] - spare.first[at]) % 2 == 1) == odd[at];
+    });
+    if (!even) return false;
+    for (const std::uint32_t at : group) {
+      for (std::uint32_t k = spare.first[at]; k < spare.first[at + 1]; ++k)
+        result_.used[spare.ends[k] / 2] = true;
+    }
+    return true;
+  }
+
+  /// The spare runs of a tree whose sum (mod 2) is the set of odd nodes: from the leaves inwards.
+  bool use_some(const std::vector<std::uint32_t>& tree, std::vector<bool>& odd) {
+    bool any = false;
+    for (std::size_t k = tree.size(); k-- > 0;) {
+      const std::uint32_t leaf = node(tree[k]), parent = node(tree[k] ^ 1U);
+      if (!odd[leaf]) continue;
+      odd[leaf] = false;
+      odd[parent] = !odd[parent];
+      result_.used[tree[k] / 2] = any = true;
     }
     return any;
   }

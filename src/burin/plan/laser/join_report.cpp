@@ -15,7 +15,8 @@ struct Summary {
   int count = 0;
   double length = 0;
   geom::Point2 at;
-  std::uint32_t by = 0;  ///< entity
+  std::uint32_t by = 0;        ///< entity
+  std::uint32_t last = kNone;  ///< piece: a piece may be repeated in two places
 };
 
 /// Pieces whose spare part is used, with its parameters.
@@ -63,7 +64,8 @@ void report_repeats(const io::Drawing& drawing, const Pieces& pieces, const Part
       summary.at = geom::point_at(*pieces.list[repeat.piece].curve, repeat.t);
       summary.by = pieces.list[repeat.by].entity;
     }
-    ++summary.count;
+    summary.count += repeat.piece != summary.last ? 1 : 0;
+    summary.last = repeat.piece;
     summary.length += repeat.length;
   }
   for (const auto& [key, summary] : summaries) {

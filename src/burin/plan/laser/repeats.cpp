@@ -263,6 +263,12 @@ class Splitter {
     const double seam = low(circle == group.end() ? group.front() : *circle);
     std::vector<Interval> intervals;
     for (const ArcView& arc : group) {
+      if (circle != group.end() && &arc != &*circle && std::abs(arc.sweep) >= full - slack) {
+        // A second full circle, wherever it starts. The cover would see two halves.
+        repeats_.list.push_back({arc.piece, circle->piece, true, 0.5, full * radius});
+        touched_[arc.piece] = true;
+        continue;
+      }
       const double extent = std::min(full, std::abs(arc.sweep));
       double from = std::fmod(low(arc) - seam, full);
       if (from < 0) from += full;
