@@ -319,10 +319,9 @@ detail::LeadRoom room_of(const Profile& profile, const LaserOptions& options,
   room.path_mm = options.tolerance.path_mm;
   room.point_mm = options.tolerance.point_mm;
   if (!options.arcs) {
-    // What the fit has left of the tolerance goes to the chords, but not less than a tenth.
-    constexpr double kLeast = 0.1;
-    const double tolerance = options.tolerance.path_mm;
-    room.sagitta_mm = std::max(tolerance - profile.max_deviation_mm, kLeast * tolerance);
+    // The other half belongs to the fit of free curves (profile.cpp).
+    constexpr double kShare = 0.5;
+    room.sagitta_mm = kShare * options.tolerance.path_mm;
   }
   return room;
 }
