@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "burin/plan/laser/join_parts.h"
-#include "burin/plan/laser/point_grid.h"
+#include "burin/plan/laser/near_grid.h"
 
 namespace burin::laser::detail {
 namespace {
@@ -38,7 +38,7 @@ class Clusterer {
   /// Spots: ends within the point tolerance of the first of them.
   void exact() {
     spot_of_.resize(ends_);
-    PointGrid grid(std::max(4 * scale_.point, 1e-300), ends_);
+    NearGrid grid(std::max(4 * scale_.point, 1e-300), ends_);
     for (std::uint32_t end = 0; end < ends_; ++end) {
       const Point2 p = end_point(parts_, runs_, end);
       std::uint32_t spot = kNone;
@@ -139,7 +139,7 @@ class Clusterer {
       std::uint32_t p, q;
     };
     std::vector<Pair> pairs;
-    PointGrid grid(2 * radius, pool.size());
+    NearGrid grid(2 * radius, pool.size());
     for (const std::uint32_t spot : pool) {
       int looked_at = 0;
       grid.near(places_[spot], radius, [&](std::uint32_t other, double d2) {
@@ -170,7 +170,7 @@ class Clusterer {
   /// Ends still single go to the nearest place where others meet (a branch drawn loosely).
   void attach_odd() {
     if (left_.empty()) return;
-    PointGrid grid(2 * scale_.join, places_.size());
+    NearGrid grid(2 * scale_.join, places_.size());
     for (std::uint32_t spot = 0; spot < places_.size(); ++spot) grid.insert(places_[spot], spot);
     for (const std::uint32_t spot : left_) {
       std::vector<std::pair<double, std::uint32_t>> near;
@@ -193,7 +193,7 @@ class Clusterer {
   /// Two pairs that were joined over a gap within join of each other are one place: which of the four ends
   /// belong together is decided by the resolution, not by chance of drawing.
   void merge_loose_pairs() {
-    PointGrid grid(2 * scale_.join, left_.size());
+    NearGrid grid(2 * scale_.join, left_.size());
     std::vector<std::uint32_t> loose;
     for (std::uint32_t spot = 0; spot < places_.size(); ++spot) {
       if (paired_[spot]) loose.push_back(spot);

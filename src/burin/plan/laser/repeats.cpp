@@ -9,7 +9,7 @@
 
 #include "burin/plan/laser/box_tree.h"
 #include "burin/plan/laser/join_parts.h"
-#include "burin/plan/laser/point_grid.h"
+#include "burin/plan/laser/near_grid.h"
 
 namespace burin::laser::detail {
 namespace {
@@ -229,7 +229,7 @@ class Splitter {
     // `same` lie within 1 + sqrt(2) of that.
     const auto place = [](const ArcView& v) { return Point2{v.center.x + v.radius, v.center.y + v.radius}; };
     const double near = 2.5 * scale_.same;
-    PointGrid grid(2 * near, arcs.size());
+    NearGrid grid(2 * near, arcs.size());
     std::vector<std::vector<ArcView>> carriers;
     for (const ArcView& arc : arcs) {
       std::uint32_t carrier = kNone;
@@ -312,7 +312,7 @@ class Splitter {
     bool any = false;
     for (std::uint32_t i = 0; i < pieces_.list.size() && !any; ++i) any = !plain(i);
     if (!any) return;
-    PointGrid grid(2 * scale_.same, pieces_.list.size());
+    NearGrid grid(2 * scale_.same, pieces_.list.size());
     std::vector<std::uint32_t> spare_of(pieces_.list.size(), kNone);
     for (std::uint32_t i = 0; i < pieces_.list.size(); ++i) {
       if (touched_[i]) continue;
