@@ -9,7 +9,8 @@
 namespace burin::io::svg {
 namespace {
 
-/// Compound tests that a sheet may ask for: a base, and as many for each element as fifty rules of its name cost.
+/// Compound tests that a sheet may ask for: a base, and as many for each element as fifty rules of its name
+/// cost.
 constexpr std::int64_t kBaseWork = 2'000'000;
 constexpr std::int64_t kWorkPerElement = 50;
 constexpr std::size_t kMaxCompounds = 16;
@@ -25,6 +26,7 @@ constexpr PropertyName kProperties[kPropertyCount] = {
     {"display", Property::display},
     {"visibility", Property::visibility},
     {"transform", Property::transform},
+    {"transform-origin", Property::transform_origin},
     {"clip-path", Property::clip_path},
     {"mask", Property::mask},
 };
