@@ -60,7 +60,11 @@ class ArcBound {
     bound.ok = true;
     if (d_ == 0 || !offset_too) return bound;
     const double shift = offset_shift(e_lo, e_hi, sine);
-    (d_ > 0 ? bound.hi : bound.lo) += shift;
+    if (d_ > 0) {
+      bound.hi += shift;
+    } else {
+      bound.lo -= shift;
+    }
     const double first = distance_of(f_first_), last = distance_of(f_last_);
     const double shifted_first = first + offset_shift(first, first, end_sine(b, 0));
     const double shifted_last = last + offset_shift(last, last, end_sine(b, 1));
@@ -407,6 +411,16 @@ double parameter_on_normal(const Path& path, double d, Point2 joint, Vec2 tangen
   return std::clamp(b, lo, hi);
 }
 
+/// Whether the path at tau lies on the normal at an end of an arc, on this side of the centre, and runs
+/// forward there: what the sectors of the proof begin and end with.
+bool starts_sector(const Path& path, const Arc& arc, bool at_end, double tau) {
+  const PointTangent c = path.at(tau);
+  const Point2 p = at_end ? arc.b : arc.a;
+  const Vec2 t = at_end ? arc.tb : arc.ta;
+  const double height = cross(t, c.point - p);
+  return arc.k * height < 1 && dot(c.tangent, t) > 0;
+}
+
 /// At an end whose direction differs from the path's, the offset of the path begins beside the offset arc:
 /// its first stretch [0, tau] (last for the end) lies outside the arc's sector, close to the circle of radius
 /// |d| about the end point P. With |path - P| <= rho and directions within an angle theta there, the distance
@@ -463,6 +477,8 @@ Deviation certify(const Target& target, const std::vector<Run>& runs) {
       next = offset_on_normal(run.arc.b, run.arc.tb, run.tau1, run.tau0, runs[i + 1].tau1);
       if (next < 0) return failed;
     }
+    if (!starts_sector(path, run.arc, false, run.tau0) || !starts_sector(path, run.arc, true, run.tau1))
+      return failed;
     const double lo = std::min(run.tau0, handed_over), hi = std::max(run.tau1, next);
     if (!certify_run(target, run.arc, lo, hi, total)) return failed;
     handed_over = next;

@@ -132,6 +132,9 @@ Result<FitResult> fit_arc_spline(const Curve2& curve, const FitOptions& options)
     }
     result.piece_starts.push_back(static_cast<std::uint32_t>(result.segments.size()));
     for (const Run& run : piece->runs) result.segments.push_back(to_segment(run.arc));
+    // Ends that differ by rounding (a corner seen from both sides, the curve's own ends) become one.
+    result.segments[result.piece_starts.back()].a = i == 0 ? start_point(curve) : paths[i].at(0).point;
+    result.segments.back().b = i + 1 == paths.size() ? end_point(curve) : paths[i + 1].at(0).point;
     result.max_deviation_mm = std::max(result.max_deviation_mm, piece->deviation.bound());
   }
   return result;
