@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arc splines for the offset of a smooth curve, within a certified tolerance (Park & Ahn 2007, 4.2.1; Park 2004).
+// Arc splines for the offset of a smooth curve, within a certified tolerance (Park & Ahn 2007, 4.2.1; Park
+// 2004).
 //
-// The offset curve is C_d(t) = C(t) + d N(t), N = (y', -x') / |C'| (to the right of the direction of travel; eq. 3).
-// A circular arc of radius rho about c follows C_d exactly as well as the concentric arc of radius rho -+ d follows
-// C, so the fit is returned on the side of C: offsetting each returned arc by d (centre kept) gives the arc spline
-// of C_d that was certified. The offset (offset.h) then treats drawn and fitted arcs alike, and where the curve is
-// bent tighter than d the concentric arc vanishes as a drawn arc would.
+// The offset curve is C_d(t) = C(t) + d N(t), N = (y', -x') / |C'| (to the right of the direction of travel;
+// eq. 3). A circular arc of radius rho about c follows C_d exactly as well as the concentric arc of radius
+// rho -+ d follows C, so the fit is returned on the side of C: offsetting each returned arc by d (centre
+// kept) gives the arc spline of C_d that was certified. The offset (offset.h) then treats drawn and fitted
+// arcs alike, and where the curve is bent tighter than d the concentric arc vanishes as a drawn arc would.
 #pragma once
 
 #include <vector>
@@ -18,7 +19,8 @@ namespace burin::geom {
 
 enum class FitMethod {
   minimal,  ///< fewest segments: longest feasible runs over the one-parameter biarc family
-  bisect,   ///< the paper's: polygon within 0.2 delta, then bisection with optimal single biarcs within 0.8 delta
+  bisect,   ///< the paper's: polygon within 0.2 delta, then bisection with optimal single biarcs within 0.8
+            ///< delta
 };
 
 struct FitOptions {
@@ -33,14 +35,15 @@ struct FitResult {
   std::vector<Segment> segments;
   /// Upper bound of the Hausdorff distance between the offset arc spline and the offset curve over the pieces
   /// where the offset curve is regular (1 + d kappa > 0), and of the distance between the returned arcs and C
-  /// everywhere. Proven (Bernstein coefficients), not sampled. <= tolerance_mm. 0 for lines and circular arcs.
+  /// everywhere. Proven (Bernstein coefficients), not sampled. <= tolerance_mm. 0 for lines and circular
+  /// arcs.
   double max_deviation_mm = 0;
   /// Index into `segments` of the first segment of each smooth piece (0 first).
   std::vector<std::uint32_t> piece_starts;
 };
 
-/// Lines and arcs come back unchanged (a full circle as two arcs). Errors (geometry): a curve of zero length; a
-/// tolerance that is not positive; a piece that cannot be fitted within the tolerance in 1e6 segments.
+/// Lines and arcs come back unchanged (a full circle as two arcs). Errors (geometry): a curve of zero length;
+/// a tolerance that is not positive; a piece that cannot be fitted within the tolerance in 1e6 segments.
 Result<FitResult> fit_arc_spline(const Curve2& curve, const FitOptions& options);
 
 }  // namespace burin::geom
