@@ -112,7 +112,6 @@ class Arrangement {
       const Segment &s = curves_.segments[i], &t = curves_.segments[j];
       if (next_of(a) == b) {
         add(a, b, meet_neighbours(s, t, options_.eps));
-        if (next_of(b) == a) add(b, a, meet_neighbours(t, s, options_.eps));
       } else if (next_of(b) == a) {
         add(b, a, meet_neighbours(t, s, options_.eps));
       } else {
@@ -524,6 +523,12 @@ class Arrangement {
     }
   }
 
+  /// Snapping moves ends by little more than rounding; half of the disagreement allowed to arcs may stay.
+  static bool on_its_circle(const Segment& s) {
+    const double r = std::abs(s.radius), slack = 0.5 * kArcConsistency * (r + 1);
+    return std::abs(distance(s.a, s.center) - r) <= slack && std::abs(distance(s.b, s.center) - r) <= slack;
+  }
+
   void finish_loop(Boundary& out, bool whole) {
     if (loop_subs_.size() > 1 && loop_subs_.front().segment == loop_subs_.back().segment &&
         !(loop_subs_.front().a == loop_subs_.front().b)) {
@@ -542,7 +547,7 @@ class Arrangement {
       Segment s = as_segment(curves_, e);
       if (s.a == s.b) continue;
       const Segment& raw = curves_.segments[e.segment];
-      if (!s.is_line() && !(s.a == raw.a && s.b == raw.b)) s = refitted(s);
+      if (!s.is_line() && !(s.a == raw.a && s.b == raw.b) && !on_its_circle(s)) s = refitted(s);
       if (first == kNone) first = e.segment;
       loop.segments.push_back(s);
     }
