@@ -395,6 +395,12 @@ class Arrangement {
     return best;
   }
 
+  /// Distance from p to the infinite line or full circle.
+  static double off_carrier(const Segment& s, Point2 p) {
+    if (s.is_line()) return std::abs(cross(unit(s.b - s.a), p - s.a));
+    return std::abs(distance(p, s.center) - std::abs(s.radius));
+  }
+
   std::optional<bool> sample(std::uint32_t segment, Point2 p, const Bundle* bundle) const {
     const Segment& s = curves_.segments[segment];
     Vec2 tangent = s.b - s.a;
@@ -402,7 +408,10 @@ class Arrangement {
     const int axis = std::abs(tangent.y) >= std::abs(tangent.x) ? 0 : 1;
     std::span<const std::uint32_t> on(&segment, 1);
     if (bundle) on = {members_.data() + bundle->begin, members_.data() + bundle->end};
-    const double tolerance = bundle ? 16 * options_.eps : noise_;
+    // Nothing else may run between the members of a bundle.
+    double tolerance = noise_;
+    for (const std::uint32_t m : on)
+      tolerance = std::max(tolerance, noise_ + 2 * off_carrier(curves_.segments[m], p));
     const BoxTree::Winding w = tree_.winding_beyond(p, axis, on, tolerance);
     if (w.close) return std::nullopt;
     const int times = bundle ? bundle->multiplicity : 1;
