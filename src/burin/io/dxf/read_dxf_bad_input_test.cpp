@@ -211,6 +211,16 @@ TEST(ReadDxfBad, NamesHaveALength) {
   expect_syntax(file("0 INSERT|2 " + longer + "|10 0|20 0"), "name", 8);
 }
 
+TEST(ReadDxfBad, ColoursOutOfRange) {
+  for (const char* color : {"-2147483648", "2147483647", "257", "-1"}) {
+    Parts parts;
+    parts.tables = layer_table(std::string("0 LAYER|2 A|70 0|62 ") + color);
+    parts.entities =
+        std::string("0 LINE|8 B|420 -2147483648|62 ") + color + "|10 0|20 0|11 1|21 1|0 LINE|8 A|10 0|11 1";
+    EXPECT_GE(read(file(parts)).entities.size(), 1u);
+  }
+}
+
 TEST(ReadDxfBad, DeepWaysAreAbbreviated) {
   Parts parts;
   for (int i = 0; i < 60; ++i) {
