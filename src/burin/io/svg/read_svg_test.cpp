@@ -324,6 +324,14 @@ TEST(Use, ExpansionIsBounded) {
   EXPECT_EQ(error_of(page(path(data) + uses), options).code, ErrorCode::range);
 }
 
+TEST(Use, HiddenCloneWithAVisiblePart) {
+  const Drawing drawing =
+      read(page("<defs><g id='d'><line x2='1'/><line id='v' x2='1' visibility='visible'/></g></defs>"
+                "<use href='#d' visibility='hidden'/><use href='#d' display='none'/>"));
+  ASSERT_EQ(drawing.entities.size(), 1u);
+  EXPECT_EQ(drawing.entities[0].id, "use/v");
+}
+
 TEST(Structure, DefinitionsAreNotDrawn) {
   const std::string shape = "<rect width='1' height='1'/>";
   std::string content;
@@ -467,7 +475,9 @@ TEST(Limits, DeepNestingDoesNotOverflowTheStack) {
   for (int i = 0; i < kDepth; ++i) text += "<g>";
   text += "<line x2='1'/>";
   for (int i = 0; i < kDepth; ++i) text += "</g>";
-  EXPECT_EQ(error_of(text + "</svg>").code, ErrorCode::range);
+  const Error error = error_of(text + "</svg>");
+  EXPECT_EQ(error.code, ErrorCode::range);
+  EXPECT_NE(error.message.find("nested"), std::string::npos) << error.message;
   ReadOptions options;
   options.max_depth = 3;
   EXPECT_EQ(read(page("<g><g><line x2='1'/></g></g>"), options).entities.size(), 1u);
@@ -486,6 +496,15 @@ TEST(Limits, EntitiesAndCurvesAndCoordinates) {
     EXPECT_FALSE(error_of(page(path(huge))).message.empty()) << huge;
   }
   EXPECT_FALSE(error_of(page("<g transform='scale(1e300)'><circle r='1e300'/></g>")).message.empty());
+}
+
+TEST(Limits, XmlTreeIsBoundedBeforeItIsBuilt) {
+  ReadOptions options;
+  options.max_entities = 10;
+  std::string nodes, attributes = "<g ";
+  for (int i = 0; i < 20000; ++i) nodes += "<a/>", attributes += "a" + std::to_string(i) + "='' ";
+  EXPECT_EQ(error_of(page(nodes), options).code, ErrorCode::range);
+  EXPECT_EQ(error_of(page(attributes + "/>"), options).code, ErrorCode::range);
 }
 
 TEST(Limits, WarningsOfOneKindAreCounted) {

@@ -174,7 +174,12 @@ Result<Outline> polyline(const Element& element, bool closed, std::size_t max_cu
 
 Result<double> LengthFrame::read(const Element& element, std::string_view name, Axis axis,
                                  double fallback) const {
-  const std::string_view text = trim(element.get(name));
+  return read_text(element.get(name), name, axis, fallback);
+}
+
+Result<double> LengthFrame::read_text(std::string_view text, std::string_view name, Axis axis,
+                                      double fallback) const {
+  text = trim(text);
   if (text.empty() || text == "auto") return fallback;
   const std::string shown = std::string(name) + "=\"" + std::string(text.substr(0, 40)) + "\"";
   const auto length = parse_length(text);
