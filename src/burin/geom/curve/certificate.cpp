@@ -17,8 +17,6 @@ constexpr double kNegligible = 1e-3;
 constexpr int kMaxDepth = 24;
 /// Rounding errors of the formulas below, in units of the largest coordinate.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-/// Below this value of 1 + d k the offset arc is nearly a point and the first-order bound is used.
-constexpr double kNearPoint = 0.05;
 
 /// c[k] += scale * sum over i + j = k of f_i g_j, f and g scaled by their binomials: the Bernstein product
 /// without its final division by the binomials.
@@ -156,9 +154,11 @@ class ArcBound {
     const double d = std::abs(d_), k = arc_.k;
     const double x = std::min(d_ * k / (1 - k * e_lo), d_ * k / (1 - k * e_hi));
     const double a = 1 + x;
-    if (!(a >= kNearPoint)) return d * std::sqrt(2 * versine);  // 2 d sin(phi / 2)
-    if (x <= 0) return d * versine / a;
-    return 2 * d * versine / (a + std::sqrt(std::max(0.0, a * a - 2 * x * versine)));
+    // Always: each point of the offset curve is this far from the one at the path's foot, 2 d sin(phi / 2).
+    const double chord = d * std::sqrt(2 * versine);
+    if (!(a > 0)) return chord;
+    const double denominator = x <= 0 ? 2 * a : a + std::sqrt(std::max(0.0, a * a - 2 * x * versine));
+    return std::min(chord, 2 * d * versine / denominator);
   }
 
   const Arc arc_;
