@@ -17,8 +17,6 @@ constexpr double kNegligible = 1e-3;
 constexpr int kMaxDepth = 24;
 /// Rounding errors of the formulas below, in units of the largest coordinate.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
-/// Below this value of 1 + d k the offset arc is nearly a point and the first-order bound is used.
-constexpr double kNearPoint = 0.05;
 
 /// c[k] += scale * sum over i + j = k of f_i g_j, f and g scaled by their binomials: the Bernstein product
 /// without its final division by the binomials.
@@ -156,9 +154,11 @@ class ArcBound {
     const double d = std::abs(d_), k = arc_.k;
     const double x = std::min(d_ * k / (1 - k * e_lo), d_ * k / (1 - k * e_hi));
     const double a = 1 + x;
-    if (!(a >= kNearPoint)) return d * std::sqrt(2 * versine);  // 2 d sin(phi / 2)
-    if (x <= 0) return d * versine / a;
-    return 2 * d * versine / (a + std::sqrt(std::max(0.0, a * a - 2 * x * versine)));
+    // Always: each point of the offset curve is this far from the one at the path's foot, 2 d sin(phi / 2).
+    const double chord = d * std::sqrt(2 * versine);
+    if (!(a > 0)) return chord;
+    const double denominator = x <= 0 ? 2 * a : a + std::sqrt(std::max(0.0, a * a - 2 * x * versine));
+    return std::min(chord, 2 * d * versine / denominator);
   }
 
   const Arc arc_;
@@ -255,74 +255,63 @@ struct CurvatureBound {
   double lo = -kInfinity, hi = kInfinity;
 };
 
-CurvatureBound curvature_of(const Bezier& b) {
-  // X about its first point over w: C' = H / w^2 with H = X' w - X w', curvature = cross(H, H') w^... only
-  // the polynomial case has a short form, so rational pieces are bounded through C' and C'' of the quotient
-  // rule.
+/// Bounds of |C'|: C' = H / w^2 with H = X' w - X w', taken about the first control point to save digits.
+Range speed_of(const Bezier& b) {
   const int p = b.degree;
   const Vec2 origin = b.x[0] / b.w[0];
-  std::array<Vec2, kMaxDegree + 1> x;
+  std::array<Vec2, 2 * kMaxDegree> h{};
   double w_lo = kInfinity, w_hi = 0;
   for (int i = 0; i <= p; ++i) {
     const auto u = static_cast<std::size_t>(i);
-    x[u] = b.x[u] - b.w[u] * origin;
     w_lo = std::min(w_lo, b.w[u]);
     w_hi = std::max(w_hi, b.w[u]);
-  }
-  // cross(C', C'') w^3 = det(X, X', X'' with weights) = w (X' x X'') - w' (X x X'') + w'' (X x X').
-  const auto at = [](const auto& c, int i, int order) {
-    const auto u = static_cast<std::size_t>(i);
-    if (order == 0) return c[u];
-    if (order == 1) return c[u + 1] - c[u];
-    return c[u + 2] - 2.0 * c[u + 1] + c[u];
-  };
-  const double p1 = p, p2 = p * (p - 1.0);
-  double cross_lo = 0, cross_hi = 0, speed_lo = kInfinity, speed_hi = 0;
-  if (p >= 2) {
-    std::array<double, 3 * kMaxDegree> sum{};
-    for (int i = 0; i <= p; ++i) {
-      for (int j = 0; j <= p - 1; ++j) {
-        for (int k = 0; k <= p - 2; ++k) {
-          const double c = binomial(p, i) * binomial(p - 1, j) * binomial(p - 2, k) * p1 * p2;
-          sum[static_cast<std::size_t>(i + j + k)] += c * (at(b.w, i, 0) * cross(at(x, j, 1), at(x, k, 2)) -
-                                                           at(b.w, j, 1) * cross(at(x, i, 0), at(x, k, 2)) +
-                                                           at(b.w, k, 2) * cross(at(x, i, 0), at(x, j, 1)));
-        }
-      }
-    }
-    cross_lo = kInfinity;
-    cross_hi = -kInfinity;
-    for (int i = 0; i <= 3 * p - 3; ++i) {
-      const double c = sum[static_cast<std::size_t>(i)] / binomial(3 * p - 3, i);
-      cross_lo = std::min(cross_lo, c);
-      cross_hi = std::max(cross_hi, c);
-    }
-  }
-  // C' = H / w^2; H by its own coefficients.
-  std::array<Vec2, 2 * kMaxDegree> h{};
-  for (int i = 0; i <= p; ++i) {
     for (int j = 0; j < p; ++j) {
-      const double c = binomial(p, i) * binomial(p - 1, j) * p1;
-      const auto u = static_cast<std::size_t>(i + j);
-      h[u] = h[u] + c * (at(b.w, i, 0) * at(x, j, 1) - at(b.w, j, 1) * at(x, i, 0));
+      const auto v = static_cast<std::size_t>(j);
+      const Vec2 dx = (b.x[v + 1] - b.w[v + 1] * origin) - (b.x[v] - b.w[v] * origin);
+      const Vec2 term = b.w[u] * dx - (b.w[v + 1] - b.w[v]) * (b.x[u] - b.w[u] * origin);
+      h[u + v] = h[u + v] + (p * binomial(p, i) * binomial(p - 1, j)) * term;
     }
   }
   Vec2 direction;
-  for (int i = 0; i < 2 * p; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    h[u] = h[u] / binomial(2 * p - 1, i);
-    direction = direction + h[u];
-  }
+  for (int i = 0; i < 2 * p; ++i) direction = direction + h[static_cast<std::size_t>(i)];
   direction = unit(direction);
+  Range speed{kInfinity, 0};
   for (int i = 0; i < 2 * p; ++i) {
-    const auto u = static_cast<std::size_t>(i);
-    speed_lo = std::min(speed_lo, dot(h[u], direction));
-    speed_hi = std::max(speed_hi, norm(h[u]));
+    const Vec2 c = h[static_cast<std::size_t>(i)] / binomial(2 * p - 1, i);
+    speed.lo = std::min(speed.lo, dot(c, direction));
+    speed.hi = std::max(speed.hi, norm(c));
   }
-  if (!(speed_lo > 0)) return {};
-  // kappa = (cross / w^3) / (|H| / w^2)^3 = cross w^3 / |H|^3.
-  const double least = w_lo * w_lo * w_lo / (speed_hi * speed_hi * speed_hi);
-  const double most = w_hi * w_hi * w_hi / (speed_lo * speed_lo * speed_lo);
+  return {std::max(0.0, speed.lo) / (w_hi * w_hi), speed.hi / (w_lo * w_lo)};
+}
+
+/// C' is a positive multiple of D, hence kappa = cross(D, D') / (|D|^2 |C'|).
+CurvatureBound curvature_of(const Bezier& b) {
+  const int q = b.hodograph_degree;
+  if (q == 0) return {0, 0};
+  std::array<double, 4 * kMaxDegree> sum{};
+  Vec2 direction;
+  for (int i = 0; i <= q; ++i) direction = direction + b.d[static_cast<std::size_t>(i)];
+  direction = unit(direction);
+  double d_lo = kInfinity, d_hi = 0;
+  for (int i = 0; i <= q; ++i) {
+    const auto u = static_cast<std::size_t>(i);
+    d_lo = std::min(d_lo, dot(b.d[u], direction));
+    d_hi = std::max(d_hi, norm(b.d[u]));
+    for (int j = 0; j < q; ++j) {
+      const auto v = static_cast<std::size_t>(j);
+      sum[u + v] += q * binomial(q, i) * binomial(q - 1, j) * cross(b.d[u], b.d[v + 1] - b.d[v]);
+    }
+  }
+  if (!(d_lo > 0)) return {};
+  double cross_lo = kInfinity, cross_hi = -kInfinity;
+  for (int i = 0; i < 2 * q; ++i) {
+    const double c = sum[static_cast<std::size_t>(i)] / binomial(2 * q - 1, i);
+    cross_lo = std::min(cross_lo, c);
+    cross_hi = std::max(cross_hi, c);
+  }
+  const Range speed = speed_of(b);
+  const double least = 1 / (d_hi * d_hi * speed.hi),
+               most = 1 / (d_lo * d_lo * speed.lo);  // most: up to infinity
   return {cross_lo < 0 ? cross_lo * most : cross_lo * least,
           cross_hi > 0 ? cross_hi * most : cross_hi * least};
 }
@@ -411,6 +400,8 @@ double parameter_on_normal(const Path& path, double d, Point2 joint, Vec2 tangen
   return std::clamp(b, lo, hi);
 }
 
+namespace {
+
 /// Whether the path at tau lies on the normal at an end of an arc, on this side of the centre, and runs
 /// forward there: what the sectors of the proof begin and end with.
 bool starts_sector(const Path& path, const Arc& arc, bool at_end, double tau) {
@@ -425,7 +416,7 @@ bool starts_sector(const Path& path, const Arc& arc, bool at_end, double tau) {
 /// its first stretch [0, tau] (last for the end) lies outside the arc's sector, close to the circle of radius
 /// |d| about the end point P. With |path - P| <= rho and directions within an angle theta there, the distance
 /// to P differs from |d| by at most rho^2 / (2 |d|) + rho sin(theta).
-static double end_gap(const Path& path, double d, double tau0, double tau1) {
+double end_gap(const Path& path, double d, double tau0, double tau1) {
   const double k = std::min(std::floor(0.5 * (tau0 + tau1)), path.end() - 1);
   const Bezier b =
       part(path.pieces[static_cast<std::size_t>(k)], std::max(0.0, tau0 - k), std::min(1.0, tau1 - k));
@@ -441,51 +432,117 @@ static double end_gap(const Path& path, double d, double tau0, double tau1) {
   return rho * rho / (2 * std::abs(d)) + rho * std::min(1.0, 2 * sine);
 }
 
+/// The parameter range without singular ranges around a regular tau, within [lo, hi].
+Range regular_around(const std::vector<Range>& singular, double tau, double lo, double hi) {
+  Range result{lo, hi};
+  for (const Range& r : singular) {
+    if (r.hi < tau) result.lo = std::max(result.lo, r.hi);
+    if (r.lo > tau) result.hi = std::min(result.hi, r.lo);
+  }
+  return result;
+}
+
+/// Keeps the account of where the offset curve leaves the sectors of the arcs that stand for it.
+class Sectors {
+ public:
+  explicit Sectors(const Target& target) : target_(target), path_(*target.path) {}
+
+  bool singular(double tau) const { return inside(target_.singular.ranges, tau); }
+
+  /// Where the offset curve passes the normal at a joint of two runs; tau1 itself when it does not: then what
+  /// sticks out is counted in gap().
+  double hand_over(const Run& before, const Run& after) {
+    const double tau = before.tau1;
+    if (target_.d == 0 || singular(tau)) return tau;
+    const Range r = regular_around(target_.singular.ranges, tau, before.tau0, after.tau1);
+    const Point2 joint = offset_end(before.arc, true);
+    const double found = parameter_on_normal(path_, target_.d, joint, before.arc.tb, tau, r.lo, r.hi);
+    if (found >= 0) return found;
+    const Place c = place(tau, joint, before.arc.tb);
+    stick_out(c, std::abs(c.along));
+    return tau;
+  }
+
+  /// Next to a singular range the offset curve turns back, possibly beyond the ends of the run's sector.
+  void check_turning_points(const Run& run) {
+    for (const Range& r : target_.singular.ranges) {
+      for (const double tau : {r.lo, r.hi}) {
+        if (tau <= run.tau0 || tau >= run.tau1) continue;
+        const Place from_start = place(tau, offset_end(run.arc, false), run.arc.ta);
+        if (from_start.along < 0) stick_out(from_start, -from_start.along);
+        const Place from_end = place(tau, offset_end(run.arc, true), run.arc.tb);
+        if (from_end.along > 0) stick_out(from_end, from_end.along);
+      }
+    }
+  }
+
+  /// An end of the path where the arc's direction differs from the path's.
+  void check_end(const Run& run, bool at_end) {
+    const double tau = at_end ? run.tau1 : run.tau0;
+    const Vec2 tangent = at_end ? run.arc.tb : run.arc.ta;
+    constexpr double kSameDirection = 1e-12;
+    if (target_.d == 0 || singular(tau) || std::abs(cross(path_.at(tau).tangent, tangent)) <= kSameDirection)
+      return;
+    const Range r = regular_around(target_.singular.ranges, tau, run.tau0, run.tau1);
+    const double entry =
+        parameter_on_normal(path_, target_.d, offset_end(run.arc, at_end), tangent, tau, r.lo, r.hi);
+    if (entry < 0 || entry == tau) return;  // the offset curve begins inside the sector
+    gap_ = std::max(gap_, end_gap(path_, target_.d, std::min(tau, entry), std::max(tau, entry)));
+  }
+
+  double gap() const { return gap_; }
+
+ private:
+  struct Place {
+    double along = 0, away = 0, cosine = 0;
+  };
+
+  Point2 offset_end(const Arc& arc, bool at_end) const {
+    return at_end ? arc.b + offset_vector(target_.d, arc.tb) : arc.a + offset_vector(target_.d, arc.ta);
+  }
+  Place place(double tau, Point2 joint, Vec2 tangent) const {
+    const PointTangent c = path_.at(tau);
+    const Vec2 v = c.point + offset_vector(target_.d, c.tangent) - joint;
+    return {dot(v, tangent), norm(v), dot(c.tangent, tangent)};
+  }
+  /// A stretch of the offset curve lies beyond a sector's end by up to `by` along the tangent there; with
+  /// directions within 60 degrees of it, it is no longer than twice that, and it is as near to the sector's
+  /// end as its own end is, plus its length.
+  void stick_out(const Place& c, double by) {
+    constexpr double kLeastCosine = 0.5;
+    gap_ = std::max(gap_, c.cosine >= kLeastCosine ? c.away + 2 * by : kInfinity);
+  }
+
+  const Target& target_;
+  const Path& path_;
+  double gap_ = 0;
+};
+
+}  // namespace
+
 Deviation certify(const Target& target, const std::vector<Run>& runs) {
   const Deviation failed{-kInfinity, kInfinity};
   const Path& path = *target.path;
-  const double d = target.d;
+  Sectors sectors(target);
+  sectors.check_end(runs.front(), false);
+  sectors.check_end(runs.back(), true);
   Deviation total;
-  double gap = 0, handed_over = runs.front().tau0;
-  // Where the offset curve enters the sector of the first arc, if not at once.
-  const auto offset_on_normal = [&](Point2 p, Vec2 tangent, double guess, double lo, double hi) {
-    return parameter_on_normal(path, d, p + offset_vector(d, tangent), tangent, guess, lo, hi);
-  };
-  const auto turned = [&](double tau, Vec2 tangent) {
-    constexpr double kSameDirection = 1e-12;
-    return d != 0 && !inside(target.singular.ranges, tau) &&
-           std::abs(cross(path.at(tau).tangent, tangent)) > kSameDirection;
-  };
-  const Run& first = runs.front();
-  if (turned(first.tau0, first.arc.ta)) {
-    const double entry = offset_on_normal(first.arc.a, first.arc.ta, first.tau0, first.tau0, first.tau1);
-    // No entry: the offset curve begins inside the sector.
-    if (entry > first.tau0) gap = std::max(gap, end_gap(path, d, first.tau0, entry));
-  }
-  const Run& final = runs.back();
-  if (turned(final.tau1, final.arc.tb)) {
-    const double exit = offset_on_normal(final.arc.b, final.arc.tb, final.tau1, final.tau0, final.tau1);
-    if (exit >= 0 && exit < final.tau1) gap = std::max(gap, end_gap(path, d, exit, final.tau1));
-  }
+  double handed_over = runs.front().tau0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Run& run = runs[i];
-    // Where the offset curve passes from this arc's sector to the next one's; the path itself does so at
-    // tau1.
-    double next = run.tau1;
-    const bool last = i + 1 == runs.size();
-    if (!last && d != 0 && !inside(target.singular.ranges, run.tau1)) {
-      next = offset_on_normal(run.arc.b, run.arc.tb, run.tau1, run.tau0, runs[i + 1].tau1);
-      if (next < 0) return failed;
-    }
     if (!starts_sector(path, run.arc, false, run.tau0) || !starts_sector(path, run.arc, true, run.tau1))
       return failed;
+    // The path passes from this arc's sector to the next one's at tau1, its offset at `next`.
+    const double next = i + 1 < runs.size() ? sectors.hand_over(run, runs[i + 1]) : run.tau1;
+    sectors.check_turning_points(run);
+    if (sectors.gap() > target.tolerance) return failed;
     const double lo = std::min(run.tau0, handed_over), hi = std::max(run.tau1, next);
     if (!certify_run(target, run.arc, lo, hi, total)) return failed;
     handed_over = next;
   }
   const double pad = kRounding * path.magnitude + target.singular.slack;
-  total.lo = std::min(total.lo, -gap) - pad;
-  total.hi = std::max(total.hi, gap) + pad;
+  total.lo = std::min(total.lo, -sectors.gap()) - pad;
+  total.hi = std::max(total.hi, sectors.gap()) + pad;
   return total.bound() <= target.tolerance ? total : failed;
 }
 

@@ -60,22 +60,69 @@ std::vector<double> piece_bounds(const Curve2& curve, const PathOfCurve& source,
   return bounds;
 }
 
-std::optional<FittedPiece> fit_piece(const Path& path, const FitOptions& options, double start_freedom,
-                                     double end_freedom) {
+Target make_target(const Path& path, double d, double tolerance) {
   Target target;
   target.path = &path;
-  target.d = options.offset_mm;
-  target.tolerance = options.tolerance_mm;
-  target.start_freedom = start_freedom;
-  target.end_freedom = end_freedom;
-  target.singular = singular_ranges(path, target.d, target.tolerance);
+  target.d = d;
+  target.tolerance = tolerance;
+  target.singular = singular_ranges(path, d, tolerance);
+  return target;
+}
+
+std::optional<FittedPiece> fit_with(FitMethod method, const Target& target, double tangent_rad) {
   // Two pieces that meet smoothly may each use up this part of what counts as smooth.
   constexpr double kTangentShare = 0.25;
-  if (auto single = fit_single(target, kTangentShare * options.tangent_rad)) return single;
-  if (options.method == FitMethod::minimal) {
-    if (auto found = fit_minimal(target)) return found;
+  if (auto single = fit_single(target, kTangentShare * tangent_rad)) return single;
+  return method == FitMethod::minimal ? fit_minimal(target) : fit_bisect(target);
+}
+
+/// The piece in parts, divided where the offset curve becomes singular: there it turns back, and only a joint
+/// at just that point with just that direction keeps its regular parts in step with the arcs.
+std::optional<FittedPiece> fit_divided(FitMethod method, const Target& target, double tangent_rad) {
+  const double end = target.path->end();
+  std::vector<double> bounds{0};
+  for (const Range& r : target.singular.ranges) {
+    for (const double tau : {r.lo, r.hi}) {
+      if (tau > bounds.back() && tau < end) bounds.push_back(tau);
+    }
   }
-  return fit_bisect(target);
+  bounds.push_back(end);
+  FittedPiece whole;
+  for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
+    const double lo = bounds[i], hi = bounds[i + 1];
+    const Path path = part(*target.path, lo, hi);
+    if (path.pieces.empty()) continue;
+    bool singular = false;
+    for (const Range& r : target.singular.ranges) singular = singular || (r.lo <= lo && hi <= r.hi);
+    Target divided = make_target(path, singular ? 0 : target.d, target.tolerance);
+    if (i == 0) divided.start_freedom = target.start_freedom;
+    if (i + 2 == bounds.size()) divided.end_freedom = target.end_freedom;
+    auto fitted = fit_with(method, divided, tangent_rad);
+    if (!fitted) fitted = fit_bisect(divided);
+    if (!fitted) return std::nullopt;
+    // Parameters of the parts are not needed any more: only arcs and the bound are.
+    whole.runs.insert(whole.runs.end(), fitted->runs.begin(), fitted->runs.end());
+    whole.deviation.lo = std::min(whole.deviation.lo, fitted->deviation.lo - target.singular.slack);
+    whole.deviation.hi = std::max(whole.deviation.hi, fitted->deviation.hi + target.singular.slack);
+  }
+  return whole;
+}
+
+std::optional<FittedPiece> fit_piece(const Path& path, const FitOptions& options, double start_freedom,
+                                     double end_freedom) {
+  Target target = make_target(path, options.offset_mm, options.tolerance_mm);
+  target.start_freedom = start_freedom;
+  target.end_freedom = end_freedom;
+  if (auto found = fit_with(options.method, target, options.tangent_rad)) return found;
+  if (!target.singular.ranges.empty()) {
+    // What the ranges leave unseen comes on top.
+    target.tolerance -= target.singular.slack;
+    if (target.tolerance > 0) {
+      if (auto found = fit_divided(options.method, target, options.tangent_rad)) return found;
+    }
+    target.tolerance = options.tolerance_mm;
+  }
+  return options.method == FitMethod::bisect ? std::nullopt : fit_bisect(target);
 }
 
 double freedom_between(const Path& before, const Path& after, double tangent_rad) {

@@ -17,10 +17,22 @@ struct Tube {
   double lo = 0, hi = 0;
 };
 
+/// How hard to look. `margin`: the part of the tolerance that the tube takes; samples show about 1 % less
+/// than the largest deviation, and what the offset adds to it shows only when a candidate is certified.
+struct Effort {
+  double margin = 1;
+  std::size_t beam = 8;     ///< states of a layer that are continued: those with the furthest reach
+  std::size_t divisor = 2;  ///< arcs stop beyond 1 / divisor of their reach
+};
+/// Tried in this order. The last ones are for bends tighter than the tolerance, where going far leads astray.
+constexpr std::array<Effort, 6> kEfforts{
+    {{0.985, 8, 2}, {0.95, 8, 2}, {0.9, 8, 2}, {0.98, 64, 16}, {0.8, 64, 16}, {0.5, 64, 16}}};
+
 /// The end of an arc of the search: the next one starts here, tangentially.
 struct State {
   Point2 q;
   Vec2 t;
+  double offset = 0;      ///< of q from the path, in tolerances
   double k = 0;           ///< curvature of the arc that led here
   std::size_t at = 0;     ///< sample on whose normal q lies
   int parent = -1;        ///< index into the arena
@@ -41,11 +53,10 @@ constexpr int kSlopeCells = 12;  // -12 .. 12
 constexpr double kSlopeStep = 1.5;
 constexpr std::size_t kCells = (2 * kOffsetCells + 1) * (2 * kSlopeCells + 1);
 
-constexpr std::size_t kBeam = 8;    // states of a layer that are continued: those with the furthest reach
-constexpr double kMaxTurn = 2.6;    // rad, of the path along one arc
-constexpr double kMinCosine = 0.5;  // between arc and path at a joint
+constexpr double kMaxTurn = 2.6;                                          // rad, of the path along one arc
+constexpr double kMinCosine = 0.5;                                        // between arc and path at a joint
 constexpr std::array<double, 5> kFractions{0.02, 0.25, 0.5, 0.75, 0.98};  // of the feasible curvatures
-constexpr std::size_t kClosings = 8;  // candidates certified before the tube is narrowed
+constexpr std::size_t kClosings = 8;  // candidates certified before the next attempt
 constexpr double kNoBound = 1e300;
 
 /// Nearest whole number in [-most, most].
@@ -55,8 +66,12 @@ int cell_index(double x, int most) {
 
 class Search {
  public:
-  Search(const std::vector<Sample>& samples, Tube tube, double start_freedom, double end_freedom)
-      : samples_(samples), tube_(tube), start_freedom_(start_freedom), end_freedom_(end_freedom) {}
+  Search(const std::vector<Sample>& samples, const Target& target, const Effort& effort)
+      : samples_(samples),
+        tube_{-effort.margin * target.tolerance, effort.margin * target.tolerance},
+        effort_(effort),
+        start_freedom_(target.start_freedom),
+        end_freedom_(target.end_freedom) {}
 
   /// Layers of one more arc each, up to the first one with closings; true when one of these passes `accept`.
   template <class Accept>
@@ -91,7 +106,7 @@ class Search {
   /// The start of the path, with all directions worth trying when it is free.
   std::vector<State> start_layer() {
     const Sample& first = samples_.front();
-    std::vector<State> layer{{first.p, first.t, 0, 0, -1, 0}};
+    std::vector<State> layer{{first.p, first.t, 0, 0, 0, -1, 0}};
     if (start_freedom_ <= 0) return layer;
     funnel_.resize(samples_.size());
     const double length = distance(first.p, samples_[pass(layer.front())].p);
@@ -123,6 +138,9 @@ class Search {
         f.lo = std::max(f.lo, 2 * (pn - tube_.hi) / (pp - tube_.hi * tube_.hi));
         f.hi = std::min(f.hi, 2 * (pn - tube_.lo) / (pp - tube_.lo * tube_.lo));
         if (f.lo > f.hi) break;
+        // The arcs of the funnel must run with the path, not meet a part of it that comes back.
+        const double k = 0.5 * (f.lo + f.hi);
+        if (!(dot(sample.t, s.t) - k * cross(sample.t, p) > 0)) break;
       }
       funnel_[j] = f;
     }
@@ -132,9 +150,11 @@ class Search {
   void rank(std::vector<State>& layer) {
     funnel_.resize(samples_.size());
     for (State& s : layer) s.reach = pass(s);
-    std::stable_sort(layer.begin(), layer.end(),
-                     [](const State& a, const State& b) { return a.reach > b.reach; });
-    if (layer.size() > kBeam) layer.resize(kBeam);
+    // With the same reach (a tight bend stops them all) those near the path have the better prospects.
+    std::stable_sort(layer.begin(), layer.end(), [](const State& a, const State& b) {
+      return a.reach != b.reach ? a.reach > b.reach : a.offset < b.offset;
+    });
+    if (layer.size() > effort_.beam) layer.resize(effort_.beam);
     while (!layer.empty() && layer.back().reach <= layer.back().at) layer.pop_back();
   }
 
@@ -151,8 +171,7 @@ class Search {
     for (int i = base; i < end; ++i) {
       const State s = arena_[static_cast<std::size_t>(i)];
       const std::size_t reach = pass(s);
-      // Stopping before half of what is possible is never better than stopping later with one of the others.
-      const std::size_t nearest = s.at + 1 + (reach - s.at) / 2;
+      const std::size_t nearest = s.at + 1 + (reach - s.at) / effort_.divisor;
       for (std::size_t j = std::min(reach, samples_.size() - 2); j >= nearest; --j) expand(s, i, j, cells);
     }
     std::vector<State> layer;
@@ -160,7 +179,8 @@ class Search {
       if (c.at == 0) continue;
       const State& s = arena_[static_cast<std::size_t>(c.parent)];
       const Arc arc = arc_towards(s.q, s.t, c.k, samples_[c.at].p);
-      layer.push_back({arc.b, arc.tb, c.k, c.at, c.parent, 0});
+      const double offset = distance(arc.b, samples_[c.at].p) / tube_.hi;
+      layer.push_back({arc.b, arc.tb, offset, c.k, c.at, c.parent, 0});
     }
     return layer;
   }
@@ -242,6 +262,7 @@ class Search {
 
   const std::vector<Sample>& samples_;
   const Tube tube_;
+  const Effort effort_;
   const double start_freedom_, end_freedom_;
   std::vector<State> arena_;
   std::vector<Funnel> funnel_;
@@ -278,11 +299,8 @@ std::optional<FittedPiece> fit_minimal(const Target& target) {
   const Path& path = *target.path;
   const std::vector<Sample> samples = sample_path(path, target.tolerance);
   if (samples.empty()) return std::nullopt;
-  // Between samples the deviation grows by about 1 %; what the offset adds shows when a candidate is
-  // certified.
-  for (const double margin : {0.985, 0.95, 0.9, 0.8, 0.65, 0.5}) {
-    Search search(samples, {-margin * target.tolerance, margin * target.tolerance}, target.start_freedom,
-                  target.end_freedom);
+  for (const Effort& effort : kEfforts) {
+    Search search(samples, target, effort);
     FittedPiece piece;
     const auto accept = [&](int state, const std::vector<Arc>& closing) {
       if (!make_runs(path, samples, search.chain(state), closing, piece.runs)) return false;
