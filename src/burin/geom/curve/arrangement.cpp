@@ -39,6 +39,8 @@ Segment as_segment(const RawCurves& curves, const SubEdge& e) {
   Segment s = curves.segments[e.segment];
   s.a = e.a;
   s.b = e.b;
+  // Parts are at most half turns; a short one that seems more had its ends exchanged by snapping.
+  if (!s.is_line() && distance2(s.a, s.b) < s.radius * s.radius && more_than_half_turn(s)) s.radius = 0;
   return s;
 }
 
