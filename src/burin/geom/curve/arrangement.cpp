@@ -11,6 +11,8 @@ namespace burin::geom::detail {
 namespace {
 
 constexpr std::uint32_t kNone = 0xffffffffu;
+/// Cosine from which on segments through one point run along each other there.
+constexpr double kAlong = 0.999;
 
 /// A cut of a raw segment at a point where it meets another.
 struct Cut {
@@ -37,6 +39,8 @@ Segment as_segment(const RawCurves& curves, const SubEdge& e) {
   Segment s = curves.segments[e.segment];
   s.a = e.a;
   s.b = e.b;
+  // Parts are at most half turns; a short one that seems more had its ends exchanged by snapping.
+  if (!s.is_line() && distance2(s.a, s.b) < s.radius * s.radius && more_than_half_turn(s)) s.radius = 0;
   return s;
 }
 
@@ -401,22 +405,35 @@ class Arrangement {
     return std::abs(distance(p, s.center) - std::abs(s.radius));
   }
 
-  std::optional<bool> sample(std::uint32_t segment, Point2 p, const Bundle* bundle) const {
-    const Segment& s = curves_.segments[segment];
-    Vec2 tangent = s.b - s.a;
-    if (!s.is_line()) tangent = s.radius > 0 ? left(p - s.center) : right(p - s.center);
+  static Vec2 tangent_at(const Segment& s, Point2 p) {
+    if (s.is_line()) return unit(s.b - s.a);
+    return unit(s.radius > 0 ? left(p - s.center) : right(p - s.center));
+  }
+
+  /// Whether the segment is boundary at p; nothing when that is not sure there.
+  std::optional<bool> sample(std::uint32_t segment, Point2 p, const Bundle* bundle) {
+    const Vec2 tangent = tangent_at(curves_.segments[segment], p);
     const int axis = std::abs(tangent.y) >= std::abs(tangent.x) ? 0 : 1;
-    std::span<const std::uint32_t> on(&segment, 1);
-    if (bundle) on = {members_.data() + bundle->begin, members_.data() + bundle->end};
-    // Nothing else may run between the members of a bundle.
-    double tolerance = noise_;
-    for (const std::uint32_t m : on)
-      tolerance = std::max(tolerance, noise_ + 2 * off_carrier(curves_.segments[m], p));
-    const BoxTree::Winding w = tree_.winding_beyond(p, axis, on, tolerance);
-    if (w.close) return std::nullopt;
-    const int times = bundle ? bundle->multiplicity : 1;
+    on_.assign(1, segment);
+    if (bundle) on_.assign(members_.begin() + bundle->begin, members_.begin() + bundle->end);
+    int beyond = tree_.winding_beyond(p, axis, on_, noise_, close_);
+    if (!close_.empty() || bundle) {
+      // What runs along the segment here (connectors too) counts as one with it.
+      beyond = tree_.winding_beyond(p, axis, on_, 4 * options_.eps, close_);
+      on_.insert(on_.end(), close_.begin(), close_.end());
+      double thick = 0;
+      for (const std::uint32_t m : on_) thick = std::max(thick, off_carrier(curves_.segments[m], p));
+      beyond = tree_.winding_beyond(p, axis, on_, noise_ + 2 * thick, close_);
+      if (!close_.empty()) return std::nullopt;
+    }
+    int times = 0;
+    for (const std::uint32_t m : on_) {
+      const double cosine = dot(tangent, tangent_at(curves_.segments[m], p));
+      if (std::abs(cosine) < kAlong) return std::nullopt;
+      times += cosine > 0 ? 1 : -1;
+    }
     const bool beyond_is_left = axis == 0 ? tangent.y < 0 : tangent.x > 0;
-    const int beyond = options_.base + w.number;
+    beyond += options_.base;
     const int left_side = beyond_is_left ? beyond : beyond + times;
     return left_side > 0 && left_side - times <= 0;
   }
@@ -610,6 +627,7 @@ class Arrangement {
   std::vector<Bundle> bundles_;
   std::vector<std::uint32_t> members_;
   std::vector<SubEdge> loop_subs_;
+  std::vector<std::uint32_t> on_, close_;
 };
 
 }  // namespace

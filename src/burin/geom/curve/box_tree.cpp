@@ -43,30 +43,31 @@ void BoxTree::cast_segment(std::size_t i, Ray& ray) const {
   const bool is_on = std::find(ray.on.begin(), ray.on.end(), static_cast<std::uint32_t>(i)) != ray.on.end();
   const int rise = above(b.y, p.y) - above(a.y, p.y);
   double side = cross(b - a, p - a);
+  const auto near_chord = [&] { return side * side <= ray.tolerance * ray.tolerance * distance2(a, b); };
   if (s.is_line()) {
     if (is_on || rise == 0) return;
-    if (side * side <= ray.tolerance * ray.tolerance * distance2(a, b)) ray.result.close = true;
+    if (near_chord()) ray.close.push_back(static_cast<std::uint32_t>(i));
     // Beyond the point when the point is left of an upward line, right of a downward one.
-    if (rise > 0 ? side > 0 : side < 0) ray.result.number += rise;
+    if (rise > 0 ? side > 0 : side < 0) ray.number += rise;
     return;
   }
   // Chord by crossing, and a full turn when the point is between chord and arc.
   const Point2 c = swap ? Point2{s.center.y, s.center.x} : s.center;
   const double radius = swap ? -s.radius : s.radius, r = std::abs(radius);
   if (is_on) side = radius > 0 ? -1 : 1;  // on the arc's side of the chord, however flat the arc
-  if (rise > 0 ? side > 0 : rise < 0 && side < 0) ray.result.number += rise;
+  if (rise > 0 ? side > 0 : rise < 0 && side < 0) ray.number += rise;
   const bool upward = b.y > a.y || (b.y == a.y && b.x < a.x);
   const bool arc_side = radius > 0 ? side < 0 || (side == 0 && upward) : side > 0 || (side == 0 && !upward);
-  if (!arc_side) return;
-  bool inside;
-  if (is_on) {
-    inside = c.x > p.x;
-  } else {
+  bool inside = c.x > p.x;
+  if (!is_on) {
     const double off2 = distance2(p, c);
-    if (std::abs(off2 - r * r) <= 2 * r * ray.tolerance) ray.result.close = true;
     inside = off2 < r * r;
+    if (std::abs(off2 - r * r) <= 2 * r * ray.tolerance && (arc_side || (rise != 0 && near_chord()))) {
+      ray.close.push_back(static_cast<std::uint32_t>(i));
+    }
   }
-  if (inside) ray.result.number += radius > 0 ? 1 : -1;
+  if (!arc_side) return;
+  if (inside) ray.number += radius > 0 ? 1 : -1;
 }
 
 void BoxTree::cast(std::size_t level, std::size_t node, Ray& ray) const {
@@ -81,7 +82,7 @@ void BoxTree::cast(std::size_t level, std::size_t node, Ray& ray) const {
     hi = std::min(hi, curves_.segments.size());
     if (loop_of_[lo] == loop_of_[hi - 1]) {
       const Point2 a = curves_.segments[lo].a, b = curves_.segments[hi - 1].b;
-      ray.result.number += above(swap ? b.x : b.y, ray.p.y) - above(swap ? a.x : a.y, ray.p.y);
+      ray.number += above(swap ? b.x : b.y, ray.p.y) - above(swap ? a.x : a.y, ray.p.y);
       return;
     }
   }
@@ -93,12 +94,12 @@ void BoxTree::cast(std::size_t level, std::size_t node, Ray& ray) const {
   for (std::size_t i = node * kFan; i < end; ++i) cast(level - 1, i, ray);
 }
 
-BoxTree::Winding BoxTree::winding_beyond(Point2 p, int axis, std::span<const std::uint32_t> on,
-                                         double tolerance) const {
-  Ray ray{axis == 1 ? Point2{p.y, p.x} : p, axis, on, tolerance, {}};
+int BoxTree::winding_beyond(Point2 p, int axis, std::span<const std::uint32_t> on, double tolerance,
+                            std::vector<std::uint32_t>& close) const {
+  Ray ray{axis == 1 ? Point2{p.y, p.x} : p, axis, on, tolerance, close};
+  close.clear();
   if (!curves_.segments.empty()) cast(levels_.size() - 1, 0, ray);
-  if (axis == 1) ray.result.number = -ray.result.number;
-  return ray.result;
+  return axis == 1 ? -ray.number : ray.number;
 }
 
 }  // namespace burin::geom::detail

@@ -39,12 +39,9 @@ class BoxTree {
   }
 
   /// Winding number on the far side (direction +x for axis 0, +y for axis 1) of point p that lies on all the
-  /// segments `on`; `close` tells whether another segment comes within `tolerance` of p.
-  struct Winding {
-    int number = 0;
-    bool close = false;
-  };
-  Winding winding_beyond(Point2 p, int axis, std::span<const std::uint32_t> on, double tolerance) const;
+  /// segments `on`. Other segments that come within `tolerance` of p are put into `close`.
+  int winding_beyond(Point2 p, int axis, std::span<const std::uint32_t> on, double tolerance,
+                     std::vector<std::uint32_t>& close) const;
 
   std::uint32_t loop_of(std::size_t segment) const { return loop_of_[segment]; }
   const Box2& box(std::size_t segment) const { return levels_[0][segment]; }
@@ -84,7 +81,8 @@ class BoxTree {
     int axis;
     std::span<const std::uint32_t> on;
     double tolerance;
-    Winding result;
+    std::vector<std::uint32_t>& close;
+    int number = 0;
   };
   void cast(std::size_t level, std::size_t node, Ray& ray) const;
   void cast_segment(std::size_t i, Ray& ray) const;

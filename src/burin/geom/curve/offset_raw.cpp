@@ -16,6 +16,9 @@ constexpr double kMaxRadius = 1e7;
 constexpr double kChordSagitta = 1e-7;
 constexpr double kMaxChords = 1e5;
 
+/// Arcs of less sagitta become lines, mm: their ends may be moved without turning them into full circles.
+constexpr double kFlat = 1e-10;
+
 /// One piece of the offset of one contour, before the joins.
 struct Piece {
   Segment s;      // shifted; for a collapsed arc a = b = its centre
@@ -89,6 +92,7 @@ Piece shifted(const Segment& s, double d, double collapse_mm) {
   }
   piece.s.a = s.a + d * piece.n0;
   piece.s.b = s.b + d * piece.n1;
+  if (distance2(piece.s.a, piece.s.b) < 8 * kFlat * std::abs(piece.s.radius)) piece.s.radius = 0;
   return piece;
 }
 
@@ -117,7 +121,8 @@ class RawBuilder {
     const double turn = cross(p.n1, q.n0), cosine = dot(p.n1, q.n0);
     // A turn back by a half turn within rounding is the tip of a spike: a sector is right, whichever it is.
     constexpr double kHalfTurn = 1e-9;
-    if (cosine > 0 && d_ * std::abs(turn) <= join_mm_) {
+    const double gap = d_ * std::abs(turn);
+    if (cosine > 0 && gap <= join_mm_ && !flips(p.s, gap) && !flips(q.s, gap)) {
       if (!p.collapsed && !q.collapsed && !(p.s.b == q.s.a)) {
         const Point2 middle = lerp(p.s.b, q.s.a, 0.5);
         p.s.b = q.s.a = middle;
@@ -129,6 +134,11 @@ class RawBuilder {
     if (turn > 0 || (cosine < 0 && turn > -kHalfTurn)) return Join::convex;
     if (!p.collapsed && !q.collapsed && &p != &q && trim(p, q, d_)) return Join::trimmed;
     return Join::connector;
+  }
+
+  /// Whether moving an end by the gap could turn a short arc into nearly a full circle.
+  static bool flips(const Segment& s, double gap) {
+    return !s.is_line() && gap > 0 && distance2(s.a, s.b) < 16 * gap * gap;
   }
 
   void emit(const Segment& s, bool inside) {
@@ -279,7 +289,9 @@ class Cleaner {
     if (out_.segments.size() == begin) return;
     Segment& last = out_.segments.back();
     if (!(last.b == start)) {
+      const Vec2 chord = last.b - last.a;
       last.b = start;
+      if (!last.is_line() && turned_or_flat(last, chord)) last.radius = 0;
       last = refitted(last);
       if (last.a == last.b) out_.segments.pop_back();
     }
@@ -324,16 +336,27 @@ class Cleaner {
   void push(Segment s) {
     if (distance2(at_, s.b) <= tiny2_) return;
     const bool moved = !(s.a == at_);
+    const Vec2 chord = s.b - s.a;
     s.a = at_;
     if (!s.is_line()) {
       // Also takes out what disagreement between ends and centre the input was allowed.
       const double off = norm2(s.a - s.center) - s.radius * s.radius;
       const double off_b = norm2(s.b - s.center) - s.radius * s.radius;
       const double slack = 1e-14 * (s.radius * s.radius);
-      if (moved || std::abs(off) > slack || std::abs(off_b) > slack) s = refitted(s);
+      if (moved && turned_or_flat(s, chord)) {
+        s.radius = 0;
+      } else if (moved || std::abs(off) > slack || std::abs(off_b) > slack) {
+        s = refitted(s);
+      }
     }
     at_ = s.b;
     out_.segments.push_back(s);
+  }
+
+  /// An arc with a moved end that would go round the other way, or has no curvature to lose.
+  bool turned_or_flat(const Segment& s, Vec2 old_chord) const {
+    const Vec2 chord = s.b - s.a;
+    return dot(chord, old_chord) <= 0 || norm2(chord) < 8 * 0.1 * point_mm_ * std::abs(s.radius);
   }
 
   CleanContours& out_;
