@@ -112,7 +112,6 @@ class Arrangement {
       const Segment &s = curves_.segments[i], &t = curves_.segments[j];
       if (next_of(a) == b) {
         add(a, b, meet_neighbours(s, t, options_.eps));
-        if (next_of(b) == a) add(b, a, meet_neighbours(t, s, options_.eps));
       } else if (next_of(b) == a) {
         add(b, a, meet_neighbours(t, s, options_.eps));
       } else {
@@ -396,6 +395,12 @@ class Arrangement {
     return best;
   }
 
+  /// Distance from p to the infinite line or full circle.
+  static double off_carrier(const Segment& s, Point2 p) {
+    if (s.is_line()) return std::abs(cross(unit(s.b - s.a), p - s.a));
+    return std::abs(distance(p, s.center) - std::abs(s.radius));
+  }
+
   std::optional<bool> sample(std::uint32_t segment, Point2 p, const Bundle* bundle) const {
     const Segment& s = curves_.segments[segment];
     Vec2 tangent = s.b - s.a;
@@ -403,7 +408,10 @@ class Arrangement {
     const int axis = std::abs(tangent.y) >= std::abs(tangent.x) ? 0 : 1;
     std::span<const std::uint32_t> on(&segment, 1);
     if (bundle) on = {members_.data() + bundle->begin, members_.data() + bundle->end};
-    const double tolerance = bundle ? 16 * options_.eps : noise_;
+    // Nothing else may run between the members of a bundle.
+    double tolerance = noise_;
+    for (const std::uint32_t m : on)
+      tolerance = std::max(tolerance, noise_ + 2 * off_carrier(curves_.segments[m], p));
     const BoxTree::Winding w = tree_.winding_beyond(p, axis, on, tolerance);
     if (w.close) return std::nullopt;
     const int times = bundle ? bundle->multiplicity : 1;
@@ -524,6 +532,12 @@ class Arrangement {
     }
   }
 
+  /// Snapping moves ends by little more than rounding; half of the disagreement allowed to arcs may stay.
+  static bool on_its_circle(const Segment& s) {
+    const double r = std::abs(s.radius), slack = 0.5 * kArcConsistency * (r + 1);
+    return std::abs(distance(s.a, s.center) - r) <= slack && std::abs(distance(s.b, s.center) - r) <= slack;
+  }
+
   void finish_loop(Boundary& out, bool whole) {
     if (loop_subs_.size() > 1 && loop_subs_.front().segment == loop_subs_.back().segment &&
         !(loop_subs_.front().a == loop_subs_.front().b)) {
@@ -542,7 +556,7 @@ class Arrangement {
       Segment s = as_segment(curves_, e);
       if (s.a == s.b) continue;
       const Segment& raw = curves_.segments[e.segment];
-      if (!s.is_line() && !(s.a == raw.a && s.b == raw.b)) s = refitted(s);
+      if (!s.is_line() && !(s.a == raw.a && s.b == raw.b) && !on_its_circle(s)) s = refitted(s);
       if (first == kNone) first = e.segment;
       loop.segments.push_back(s);
     }

@@ -49,6 +49,25 @@ Candidates circles_meet(const Segment& s, const Segment& t, double eps) {
   return {{foot + half * left(e), foot - half * left(e)}, 2};
 }
 
+/// All of t further than eps to one side of the line s (t a line).
+bool beside(const Segment& s, const Segment& t, double eps2) {
+  const Vec2 u = s.b - s.a;
+  const double side_a = cross(u, t.a - s.a), side_b = cross(u, t.b - s.a);
+  const double nearer = std::min(std::abs(side_a), std::abs(side_b));
+  return side_a * side_b > 0 && nearer * nearer > eps2 * norm2(u);
+}
+
+/// All of t further than eps outside or inside the full circle of s.
+bool off_circle(const Segment& s, const Segment& t, double eps) {
+  const double r = std::abs(s.radius), inner = r - eps;
+  if (inner <= 0) return false;
+  // A line is inside when its ends are.
+  if (t.is_line()) {
+    return distance2(t.a, s.center) < inner * inner && distance2(t.b, s.center) < inner * inner;
+  }
+  return false;
+}
+
 class Collector {
  public:
   explicit Collector(double eps) : eps2_(eps * eps) {}
@@ -103,6 +122,11 @@ bool near_segment(const Segment& s, Point2 p, double eps) {
 }
 
 Meeting meet(const Segment& s, const Segment& t, double eps) {
+  if (s.is_line() && t.is_line()) {
+    if (beside(s, t, eps * eps) || beside(t, s, eps * eps)) return NoMeet{};
+  } else if ((t.is_line() && off_circle(s, t, eps)) || (s.is_line() && off_circle(t, s, eps))) {
+    return NoMeet{};
+  }
   Collector found(eps);
   const Candidates c = carriers_meet(s, t, eps);
   for (int i = 0; i < c.count; ++i) {
@@ -119,22 +143,29 @@ Meeting meet(const Segment& s, const Segment& t, double eps) {
 Meeting meet_neighbours(const Segment& s, const Segment& t, double eps) {
   const Point2 joint = s.b;
   const double eps2 = eps * eps;
+  // Lines share another point only when the second turns back.
+  if (s.is_line() && t.is_line() && dot(s.b - s.a, t.b - t.a) >= 0) return NoMeet{};
   Collector found(eps);
+  // Two segments that make a whole loop meet at both ends.
+  const bool loop = s.a == t.b;
   const auto consider = [&](Point2 p) {
+    if (loop && distance2(p, s.a) <= eps2) return;
     if (distance2(p, joint) > eps2 && near_segment(s, p, 2 * eps) && near_segment(t, p, 2 * eps)) {
       found.crossing(p);
     }
   };
   // The joint is one of the two points the carriers share; the other is its mirror image.
   if (s.is_line() != t.is_line()) {
-    const Vec2 u = s.is_line() ? unit(joint - s.a) : unit(t.b - joint);
+    const Vec2 u = s.is_line() ? s.a - joint : t.b - joint;  // from the joint along the line
     const Point2 center = s.is_line() ? t.center : s.center;
-    consider(joint + (2 * dot(center - joint, u)) * u);
+    const double f = 2 * dot(center - joint, u);
+    if (f > 0) consider(joint + (f / norm2(u)) * u);
   } else if (!s.is_line()) {
     const Vec2 w = t.center - s.center;
     const double ww = norm2(w);
     if (ww > 0) consider(joint - (2 * cross(w, joint - s.center) / ww) * left(w));
   }
+  if (loop) return found.meeting();
   if (distance2(s.a, joint) > eps2 && near_segment(t, s.a, eps)) found.end(s.a);
   if (distance2(t.b, joint) > eps2 && near_segment(s, t.b, eps)) found.end(t.b);
   return found.meeting();
@@ -154,8 +185,18 @@ Segment refitted(Segment s) {
   return s;
 }
 
+bool more_than_half_turn(const Segment& s) {
+  const double inner = cross(s.b - s.a, s.center - s.a);
+  return s.radius > 0 ? inner < 0 : inner > 0;
+}
+
 Point2 middle_of(const Segment& s) {
-  if (s.is_line()) return lerp(s.a, s.b, 0.5);
+  const Point2 chord_middle = lerp(s.a, s.b, 0.5);
+  if (s.is_line()) return chord_middle;
+  // For short arcs the direction of the chord is unsure when the ends are; that to its middle is not.
+  const Vec2 v = chord_middle - s.center;
+  const double length = norm(v), r = std::abs(s.radius);
+  if (length > 0.5 * r && !more_than_half_turn(s)) return s.center + (r / length) * v;
   return s.center + s.radius * right(unit(s.b - s.a));
 }
 

@@ -48,7 +48,9 @@ Meeting meet_neighbours(const Segment& s, const Segment& t, double eps);
 
 /// Moves the centre onto the bisector of the ends and takes the radius from it, after the ends were changed.
 Segment refitted(Segment s);
-/// Middle of the arc or line.
+/// Of an arc: whether it sweeps more than a half turn, as far as the ends tell.
+bool more_than_half_turn(const Segment& s);
+/// Middle of the arc or line; any sweep.
 Point2 middle_of(const Segment& s);
 /// Box without trigonometry.
 Box2 quick_bounds(const Segment& s);

@@ -203,6 +203,29 @@ TEST(ReadDxfBad, InsertsOfNothing) {
   }
 }
 
+TEST(ReadDxfBad, NamesHaveALength) {
+  const std::string longest(1000, 'n'), longer(1001, 'n');
+  EXPECT_EQ(read(file("0 LINE|8 " + longest + "|10 0|20 0|11 1|21 1")).entities.at(0).layer, longest);
+  expect_syntax(file("0 LINE|8 " + longer + "|10 0|20 0|11 1|21 1"), "name", 8);
+  expect_syntax(file("0 TEXT|8 " + longer), "name", 8);
+  expect_syntax(file("0 INSERT|2 " + longer + "|10 0|20 0"), "name", 8);
+}
+
+TEST(ReadDxfBad, DeepWaysAreAbbreviated) {
+  Parts parts;
+  for (int i = 0; i < 60; ++i) {
+    const std::string own = std::to_string(i), next = std::to_string(i + 1);
+    parts.blocks +=
+        "0 BLOCK|2 B" + own + "|10 0|20 0|0 INSERT|5 F" + own + "|2 B" + next + "|10 0|20 0|0 ENDBLK|";
+  }
+  parts.blocks += "0 BLOCK|2 B60|10 0|20 0|0 LINE|5 FF|10 0|20 0|11 1|21 0|0 ENDBLK";
+  parts.entities = "0 INSERT|5 2F|2 B0|10 0|20 0";
+  const std::string id = read(file(parts)).entities.at(0).id;
+  EXPECT_LT(id.size(), 250u);
+  EXPECT_EQ(id.substr(0, 14), "INSERT 2F/.../") << id;
+  EXPECT_EQ(id.substr(id.size() - 8), "/LINE FF") << id;
+}
+
 TEST(ReadDxfBad, ManyAlikeMessagesAreSummedUp) {
   std::string entities = "0 CIRCLE|10 0|20 0|40 0";
   for (int i = 1; i < 1500; ++i) entities += "|0 CIRCLE|10 0|20 0|40 0";

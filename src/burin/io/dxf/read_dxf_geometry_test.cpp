@@ -352,6 +352,13 @@ TEST(DxfSpline, PeriodicUniformCubic) {
   }
 }
 
+TEST(DxfSpline, ClosedByFlagOnlyIsReported) {
+  Diagnostics diagnostics;
+  const Drawing drawing = read(file(spline(1, 1, {0, 0, 1, 1}, {{0, 0}, {3, 0}})), diagnostics);
+  EXPECT_FALSE(drawing.entities.at(0).paths.at(0).closed);
+  EXPECT_EQ(diagnostics.count("spline_open"), 1u);
+}
+
 TEST(DxfSpline, DegreeOneAndFive) {
   const Drawing one = read(file(spline(1, 8, {0, 0, 1, 2, 2}, {{0, 0}, {3, 0}, {3, 5}})));
   expect_near(point_at(only_curve(one), 0.5), {3, 0});

@@ -224,6 +224,25 @@ TEST(Transform, MirroredArcKeepsItsPlace) {
                -5 / std::sqrt(2));
 }
 
+TEST(Transform, Origin) {
+  struct Case {
+    const char* origin;
+    double x, y;  // where (0, 0) goes by a quarter turn about it: (ox + oy, oy - ox) in the file
+  };
+  for (const Case& c :
+       {Case{"3 4", 7, 1}, Case{"3px, 4px", 7, 1}, Case{"10% 0", 10, -10}, Case{"left 5", 5, 5},
+        Case{"top right", 100, -100}, Case{"0 0", 0, 0}, Case{"20", 70, 30}, Case{"3 4 0", 7, 1}}) {
+    const std::string style =
+        "style='transform:rotate(90deg);transform-origin:" + std::string(c.origin) + "'";
+    const Drawing drawing =
+        read("<svg viewBox='0 0 100 100' width='100mm'><line x2='1' " + style + "/></svg>");
+    ASSERT_EQ(drawing.entities.size(), 1u);
+    expect_point(start_of(drawing.entities[0]), c.x, 100 - c.y);
+  }
+  EXPECT_EQ(error_of("<svg><g transform='scale(2)' transform-origin='middle'/></svg>").code,
+            ErrorCode::unsupported);
+}
+
 TEST(Transform, ThatFlattensThePlane) {
   const Drawing drawing = read(
       page("<g transform='scale(0)'><line x2='1'/></g><rect width='1' height='1' transform='scale(1,0)'/>"));

@@ -104,9 +104,10 @@ TEST(Style, ChildAndDescendantNeedBacktracking) {
 TEST(Style, UnknownCssIsSkippedAndReported) {
   Diagnostics diagnostics;
   const auto drawing = svg_test::try_read(
-      page("<style>@import url('a;b.css'); @media print{ line{stroke:blue} } line:hover{stroke:lime} "
-           "line{stroke:;fill:none;stroke:red; broken; :x } line + line {stroke:blue} .z{stroke:blue</style>" +
-           line_x("")),
+      page(
+          "<style>@import url('a;b.css'); @media print{ line{stroke:blue} } line:hover{stroke:lime} "
+          "line{stroke:;fill:none;stroke:red; broken; :x } line + line {stroke:blue} .z{stroke:blue</style>" +
+          line_x("")),
       diagnostics);
   ASSERT_TRUE(drawing.ok()) << drawing.error().to_string();
   EXPECT_EQ(drawing->entities.at(0).color, 0xFF0000u);

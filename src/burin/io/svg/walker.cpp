@@ -125,7 +125,16 @@ Result<Walker::Context> Walker::enter(int index, const Context& outer) {
   if (style->transform && !context.hidden) {
     auto map = parse_transform(*style->transform);
     if (!map) return located(std::move(map).error(), element);
-    context.map = outer.map * *map;
+    Affine2 local = *map;
+    if (style->transform_origin) {
+      const auto origin = parse_origin(*style->transform_origin, page_.px_per_inch, outer.viewport);
+      if (!origin) {
+        return Error{ErrorCode::unsupported, "transform-origin (two lengths or keywords are accepted)",
+                     where(element)};
+      }
+      local = Affine2{1, 0, 0, 1, origin->x, origin->y} * local * Affine2{1, 0, 0, 1, -origin->x, -origin->y};
+    }
+    context.map = outer.map * local;
   }
   return context;
 }

@@ -7,7 +7,7 @@
 #include <optional>
 #include <variant>
 
-#include "burin/plan/laser/box_tree.h"
+#include "burin/geom/box_tree.h"
 #include "burin/plan/laser/join_parts.h"
 #include "burin/plan/laser/near_grid.h"
 
@@ -149,7 +149,7 @@ class LineBuckets {
   const std::vector<LineView>& lines_;
   JoinScale scale_;
   std::array<std::vector<std::uint32_t>, kBuckets> members_;
-  std::vector<BoxTree> trees_;
+  std::vector<geom::BoxTree2> trees_;
 };
 
 class Splitter {

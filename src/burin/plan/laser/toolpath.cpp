@@ -309,8 +309,8 @@ class Writer {
   Point2 at_{};
 };
 
-detail::LeadRoom room_of(const Profile& profile, const LaserOptions& options,
-                         const detail::Clearance& outlines, const detail::Clearance& paths) {
+detail::LeadRoom room_of(const LaserOptions& options, const detail::Clearance& outlines,
+                         const detail::Clearance& paths) {
   detail::LeadRoom room;
   room.outlines = &outlines;
   room.paths = &paths;
@@ -350,7 +350,7 @@ Result<Toolpath> make_toolpath(const Profile& profile, const LaserOptions& optio
   const detail::Tiling tiling = tiling_of(profile, options.copies);
   const detail::Clearance outlines = detail::clearance_of_outlines(profile, tiling);
   const detail::Clearance paths = detail::clearance_of_paths(profile, tiling);
-  const detail::LeadRoom room = room_of(profile, options, outlines, paths);
+  const detail::LeadRoom room = room_of(options, outlines, paths);
   const std::vector<Job> jobs = make_jobs(profile, options, room);
   const std::vector<detail::Visit> tour = plan_order(profile, jobs, options);
 
