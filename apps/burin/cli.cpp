@@ -123,7 +123,8 @@ class Check {
       if (equals != std::string::npos) throw UsageError{name + " takes no value", app_};
       return;
     }
-    if (!given_.insert(option).second) throw UsageError{name + " is given twice (once is enough)", app_};
+    const bool once = option->get_items_expected_max() == 1;
+    if (once && !given_.insert(option).second) throw UsageError{name + " is given twice (once is enough)", app_};
     const bool attached = is_long ? equals != std::string::npos : argument.size() > 2;
     const bool empty = attached && is_long && equals + 1 == argument.size();
     if (empty || (!attached && at_ + 1 >= arguments_.size())) {
