@@ -44,6 +44,10 @@ bool is_point(const geom::Curve2& curve, Point2 a, Point2 b, double tolerance) {
   return std::hypot(box.width(), box.height()) <= tolerance;
 }
 
+// A dead end of this many join lengths that is drawn there and back is a slip of the drawing, not a slit to
+// be cut.
+constexpr double kSpike = 4.0;
+
 /// A part in the direction of the contour.
 struct Item {
   std::uint32_t piece = 0;
@@ -69,14 +73,18 @@ class Joiner {
     const Resolved resolved = resolve(pieces_, parts_, runs_, nodes);
     report_repeats(drawing_, pieces_, parts_, runs_, resolved, repeats, diagnostics_);
     for (const Branch& branch : resolved.branches) report_branch(branch);
-    for (const Chain& chain : resolved.chains) write_chain(chain);
+    for (const Chain& chain : resolved.chains) {
+      if (!is_spike(chain)) write_chain(chain);
+    }
   }
 
   std::vector<Contour> take() {
     std::vector<std::size_t> order(found_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
-      return found_[i].order != found_[j].order ? found_[i].order < found_[j].order : i < j;
+      const Found &p = found_[i], &q = found_[j];
+      if (p.order != q.order) return p.order < q.order;
+      return p.t0 != q.t0 ? p.t0 < q.t0 : i < j;
     });
     std::vector<Contour> contours;
     contours.reserve(order.size());
@@ -90,13 +98,16 @@ class Joiner {
  private:
   struct Found {
     Contour contour;
-    std::uint32_t order = 0;
+    std::uint32_t order = 0;  ///< of the first curve in the file
+    double t0 = 0;            ///< where on it the contour starts
     std::vector<Warning> warnings;
   };
 
   void collect(const std::vector<Treatment>& treatments) {
     std::uint32_t order = 0;
     for (std::uint32_t e = 0; e < drawing_.entities.size(); ++e) {
+      int points = 0;
+      Point2 first_point;
       for (const io::Path& path : drawing_.entities[e].paths) {
         if (treatments[e] != treatment_) {
           order += static_cast<std::uint32_t>(path.curves.size());
@@ -108,14 +119,19 @@ class Joiner {
         for (const geom::Curve2& curve : path.curves) {
           const Piece piece{&curve, e, order++, geom::start_point(curve), geom::end_point(curve)};
           if (is_point(curve, piece.a, piece.b, scale_.point)) {
-            diagnostics_.info_at("zero_length", "a curve without length is dropped", piece.a.x, piece.a.y,
-                                 where(drawing_.entities[e]));
+            if (points++ == 0) first_point = piece.a;
           } else {
             pieces_.list.push_back(piece);
           }
         }
         range.end = static_cast<std::uint32_t>(pieces_.list.size());
         if (range.end > range.first) pieces_.paths.push_back(range);
+      }
+      if (points > 0) {
+        diagnostics_.info_at("zero_length",
+                             points == 1 ? "a curve without length is dropped"
+                                         : std::to_string(points) + " curves without length are dropped",
+                             first_point.x, first_point.y, where(drawing_.entities[e]));
       }
     }
   }
@@ -224,6 +240,22 @@ class Joiner {
     write(std::move(items), true);
   }
 
+  bool is_spike(const Chain& chain) {
+    if (chain.closed) return false;
+    double length = 0;
+    for (const Step& step : chain.steps) {
+      if (runs_.list[step.run].twin == kNone) return false;
+      const Part& part = parts_.list[runs_.parts[runs_.list[step.run].first]];
+      length += geom::distance(part.a, part.b);
+    }
+    if (length > kSpike * scale_.join) return false;
+    const Part& part = parts_.list[runs_.parts[runs_.list[chain.steps[0].run].first]];
+    diagnostics_.info_at("zero_length",
+                         "a spike of " + format_fixed(length, 4) + " mm, drawn there and back, is dropped",
+                         part.a.x, part.a.y, where(drawing_.entities[pieces_.list[part.piece].entity]));
+    return true;
+  }
+
   void write_chain(const Chain& chain) {
     std::vector<Item> items;
     for (const Step& step : chain.steps) {
@@ -279,6 +311,7 @@ class Joiner {
     merge_parts(items);
     Found found;
     found.order = pieces_.list[items.front().piece].order;
+    found.t0 = items.front().t0;
     Contour& contour = found.contour;
     geom::Box2 box;
     for (const Item& i : items) {

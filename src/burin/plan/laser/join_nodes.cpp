@@ -123,7 +123,7 @@ class Clusterer {
       if (odd(spot)) pool.push_back(spot);
     }
     paired_.assign(places_.size(), false);
-    for (double radius = std::min(2 * scale_.point, scale_.join); !pool.empty() && radius > 0; radius *= 2) {
+    for (double radius = std::min(2 * scale_.point, scale_.join); !pool.empty() && radius > 0; radius *= 4) {
       const bool last = radius >= scale_.join;
       pair_within(pool, last ? scale_.join : radius);
       pool.erase(std::remove_if(pool.begin(), pool.end(), [&](std::uint32_t s) { return paired_[s]; }),
@@ -193,11 +193,11 @@ class Clusterer {
   /// Two pairs that were joined over a gap within join of each other are one place: which of the four ends
   /// belong together is decided by the resolution, not by chance of drawing.
   void merge_loose_pairs() {
-    NearGrid grid(2 * scale_.join, left_.size());
     std::vector<std::uint32_t> loose;
     for (std::uint32_t spot = 0; spot < places_.size(); ++spot) {
       if (paired_[spot]) loose.push_back(spot);
     }
+    NearGrid grid(2 * scale_.join, loose.size());
     for (const std::uint32_t spot : loose) grid.insert(places_[spot], spot);
     for (const std::uint32_t spot : loose) {
       int looked_at = 0;

@@ -495,6 +495,19 @@ TEST(Join, RowsOfTinyPiecesKeepTheirShape) {
   EXPECT_EQ(gap.contours[0].curves.size(), curves.size());
 }
 
+TEST(Join, SpikesAreDroppedWhenTiny) {
+  for (const double spike : {0.03, 3.0}) {  // along the first side, past the corner and back
+    const std::vector<Curve2> outline = {Line2{{0, 0}, {10 + spike, 0}}, Line2{{10 + spike, 0}, {10, 0}},
+                                         Line2{{10, 0}, {10, 5}}, Line2{{10, 5}, {0, 5}},
+                                         Line2{{0, 5}, {0, 0}}};
+    const Joined joined = join(drawing_of({entity("LWPOLYLINE", outline, true)}));
+    EXPECT_EQ(joined.closed(), 1U);
+    EXPECT_NEAR(area(joined.contours[0]), 50, 1e-9);
+    EXPECT_EQ(joined.count("open_chain"), spike > 1 ? 1U : 0U);
+    EXPECT_EQ(joined.count("zero_length"), spike > 1 ? 0U : 1U);
+  }
+}
+
 TEST(Join, CutAndEngravedAreNotJoined) {
   auto sides = rectangle(0, 0, 10, 5);
   io::Drawing drawing =

@@ -121,7 +121,7 @@ class LineBuckets {
   }
 
  private:
-  static constexpr int kBuckets = 64;
+  static constexpr int kBuckets = 256;
   static constexpr double kWidth = geom::kPi / kBuckets;
 
   static int bucket_of(const LineView& line) {
