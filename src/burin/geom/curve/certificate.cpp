@@ -60,7 +60,11 @@ class ArcBound {
     bound.ok = true;
     if (d_ == 0 || !offset_too) return bound;
     const double shift = offset_shift(e_lo, e_hi, sine);
-    (d_ > 0 ? bound.hi : bound.lo) += shift;
+    if (d_ > 0) {
+      bound.hi += shift;
+    } else {
+      bound.lo -= shift;
+    }
     const double first = distance_of(f_first_), last = distance_of(f_last_);
     const double shifted_first = first + offset_shift(first, first, end_sine(b, 0));
     const double shifted_last = last + offset_shift(last, last, end_sine(b, 1));
@@ -407,36 +411,81 @@ double parameter_on_normal(const Path& path, double d, Point2 joint, Vec2 tangen
   return std::clamp(b, lo, hi);
 }
 
+/// Whether the path at tau lies on the normal at an end of an arc, on this side of the centre, and runs
+/// forward there: what the sectors of the proof begin and end with.
+bool starts_sector(const Path& path, const Arc& arc, bool at_end, double tau) {
+  const PointTangent c = path.at(tau);
+  const Point2 p = at_end ? arc.b : arc.a;
+  const Vec2 t = at_end ? arc.tb : arc.ta;
+  const double height = cross(t, c.point - p);
+  return arc.k * height < 1 && dot(c.tangent, t) > 0;
+}
+
+/// At an end whose direction differs from the path's, the offset of the path begins beside the offset arc:
+/// its first stretch [0, tau] (last for the end) lies outside the arc's sector, close to the circle of radius
+/// |d| about the end point P. With |path - P| <= rho and directions within an angle theta there, the distance
+/// to P differs from |d| by at most rho^2 / (2 |d|) + rho sin(theta).
+static double end_gap(const Path& path, double d, double tau0, double tau1) {
+  const double k = std::min(std::floor(0.5 * (tau0 + tau1)), path.end() - 1);
+  const Bezier b =
+      part(path.pieces[static_cast<std::size_t>(k)], std::max(0.0, tau0 - k), std::min(1.0, tau1 - k));
+  if (tau1 - k > 1 || tau0 < k) return kInfinity;  // longer than a Bezier piece: not a small gap
+  const double rho = length_bound(b);
+  double sine = 0;
+  const Vec2 direction = unit(b.d[0]);
+  for (int i = 0; i <= b.hodograph_degree; ++i) {
+    const Vec2 other = unit(b.d[static_cast<std::size_t>(i)]);
+    if (dot(direction, other) < 0) return kInfinity;
+    sine = std::max(sine, std::abs(cross(direction, other)));
+  }
+  return rho * rho / (2 * std::abs(d)) + rho * std::min(1.0, 2 * sine);
+}
+
 Deviation certify(const Target& target, const std::vector<Run>& runs) {
   const Deviation failed{-kInfinity, kInfinity};
   const Path& path = *target.path;
+  const double d = target.d;
   Deviation total;
-  double reach_of_ends = 0, handed_over = runs.front().tau0;
+  double gap = 0, handed_over = runs.front().tau0;
+  // Where the offset curve enters the sector of the first arc, if not at once.
+  const auto offset_on_normal = [&](Point2 p, Vec2 tangent, double guess, double lo, double hi) {
+    return parameter_on_normal(path, d, p + offset_vector(d, tangent), tangent, guess, lo, hi);
+  };
+  const auto turned = [&](double tau, Vec2 tangent) {
+    constexpr double kSameDirection = 1e-12;
+    return d != 0 && !inside(target.singular.ranges, tau) &&
+           std::abs(cross(path.at(tau).tangent, tangent)) > kSameDirection;
+  };
+  const Run& first = runs.front();
+  if (turned(first.tau0, first.arc.ta)) {
+    const double entry = offset_on_normal(first.arc.a, first.arc.ta, first.tau0, first.tau0, first.tau1);
+    // No entry: the offset curve begins inside the sector.
+    if (entry > first.tau0) gap = std::max(gap, end_gap(path, d, first.tau0, entry));
+  }
+  const Run& final = runs.back();
+  if (turned(final.tau1, final.arc.tb)) {
+    const double exit = offset_on_normal(final.arc.b, final.arc.tb, final.tau1, final.tau0, final.tau1);
+    if (exit >= 0 && exit < final.tau1) gap = std::max(gap, end_gap(path, d, exit, final.tau1));
+  }
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const Run& run = runs[i];
     // Where the offset curve passes from this arc's sector to the next one's; the path itself does so at
     // tau1.
     double next = run.tau1;
     const bool last = i + 1 == runs.size();
-    if (!last && target.d != 0 && !inside(target.singular.ranges, run.tau1)) {
-      const Point2 joint = run.arc.b + offset_vector(target.d, run.arc.tb);
-      next = parameter_on_normal(path, target.d, joint, run.arc.tb, run.tau1, run.tau0, runs[i + 1].tau1);
+    if (!last && d != 0 && !inside(target.singular.ranges, run.tau1)) {
+      next = offset_on_normal(run.arc.b, run.arc.tb, run.tau1, run.tau0, runs[i + 1].tau1);
       if (next < 0) return failed;
     }
+    if (!starts_sector(path, run.arc, false, run.tau0) || !starts_sector(path, run.arc, true, run.tau1))
+      return failed;
     const double lo = std::min(run.tau0, handed_over), hi = std::max(run.tau1, next);
     if (!certify_run(target, run.arc, lo, hi, total)) return failed;
     handed_over = next;
   }
-  // At the ends of the path an arc whose tangent is not quite the path's shifts the offset point sideways.
-  for (const bool at_end : {false, true}) {
-    const Run& run = at_end ? runs.back() : runs.front();
-    const Vec2 tangent = path.at(at_end ? run.tau1 : run.tau0).tangent;
-    reach_of_ends =
-        std::max(reach_of_ends, std::abs(target.d * cross(tangent, at_end ? run.arc.tb : run.arc.ta)));
-  }
-  const double pad = kRounding * path.magnitude + target.singular.slack + reach_of_ends;
-  total.lo -= pad;
-  total.hi += pad;
+  const double pad = kRounding * path.magnitude + target.singular.slack;
+  total.lo = std::min(total.lo, -gap) - pad;
+  total.hi = std::max(total.hi, gap) + pad;
   return total.bound() <= target.tolerance ? total : failed;
 }
 

@@ -34,6 +34,8 @@ struct Target {
   const Path* path = nullptr;
   double d = 0;          ///< offset to the right
   double tolerance = 0;  ///< of both the path and its offset
+  /// How far (rad) the arcs may leave the path's direction at its ends.
+  double start_freedom = 0, end_freedom = 0;
   SingularRanges singular;
 };
 

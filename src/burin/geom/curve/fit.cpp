@@ -60,11 +60,14 @@ std::vector<double> piece_bounds(const Curve2& curve, const PathOfCurve& source,
   return bounds;
 }
 
-std::optional<FittedPiece> fit_piece(const Path& path, const FitOptions& options) {
+std::optional<FittedPiece> fit_piece(const Path& path, const FitOptions& options, double start_freedom,
+                                     double end_freedom) {
   Target target;
   target.path = &path;
   target.d = options.offset_mm;
   target.tolerance = options.tolerance_mm;
+  target.start_freedom = start_freedom;
+  target.end_freedom = end_freedom;
   target.singular = singular_ranges(path, target.d, target.tolerance);
   // Two pieces that meet smoothly may each use up this part of what counts as smooth.
   constexpr double kTangentShare = 0.25;
@@ -75,7 +78,19 @@ std::optional<FittedPiece> fit_piece(const Path& path, const FitOptions& options
   return fit_bisect(target);
 }
 
+double freedom_between(const Path& before, const Path& after, double tangent_rad) {
+  const Vec2 a = before.at(before.end()).tangent, b = after.at(0).tangent;
+  return corner_freedom(std::abs(std::atan2(cross(a, b), dot(a, b))), tangent_rad);
+}
+
 }  // namespace
+
+double corner_freedom(double turn_rad, double tangent_rad) {
+  constexpr double kMost = 0.1;
+  if (!(turn_rad > tangent_rad)) return 0;
+  // At a tip (a turn near pi) the two sides must not cross.
+  return std::clamp(0.25 * std::min(turn_rad, kPi - turn_rad), 0.0, kMost);
+}
 
 Result<FitResult> fit_arc_spline(const Curve2& curve, const FitOptions& options) {
   if (auto valid = validate(curve); !valid.ok()) return valid.error();
@@ -98,10 +113,18 @@ Result<FitResult> fit_arc_spline(const Curve2& curve, const FitOptions& options)
 
   FitResult result;
   const std::vector<double> bounds = piece_bounds(curve, *source, options.tangent_rad);
+  std::vector<Path> paths;
   for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
-    const Path path = part(source->path, bounds[i], bounds[i + 1]);
-    if (path.pieces.empty()) continue;
-    const auto piece = fit_piece(path, options);
+    Path path = part(source->path, bounds[i], bounds[i + 1]);
+    if (!path.pieces.empty()) paths.push_back(std::move(path));
+  }
+  double freedom = options.start_freedom_rad;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const Path& path = paths[i];
+    const double start_freedom = freedom;
+    freedom = i + 1 == paths.size() ? options.end_freedom_rad
+                                    : freedom_between(path, paths[i + 1], options.tangent_rad);
+    const auto piece = fit_piece(path, options, start_freedom, freedom);
     if (!piece || result.segments.size() + piece->runs.size() > kMaxSegments) {
       return geometry_error("the curve cannot be approximated within " +
                             std::to_string(options.tolerance_mm) + " mm by " + std::to_string(kMaxSegments) +
@@ -109,6 +132,9 @@ Result<FitResult> fit_arc_spline(const Curve2& curve, const FitOptions& options)
     }
     result.piece_starts.push_back(static_cast<std::uint32_t>(result.segments.size()));
     for (const Run& run : piece->runs) result.segments.push_back(to_segment(run.arc));
+    // Ends that differ by rounding (a corner seen from both sides, the curve's own ends) become one.
+    result.segments[result.piece_starts.back()].a = i == 0 ? start_point(curve) : paths[i].at(0).point;
+    result.segments.back().b = i + 1 == paths.size() ? end_point(curve) : paths[i + 1].at(0).point;
     result.max_deviation_mm = std::max(result.max_deviation_mm, piece->deviation.bound());
   }
   return result;

@@ -32,23 +32,36 @@ struct Funnel {
   double lo = 0, hi = 0;
 };
 
-constexpr std::size_t kBeam = 24;  // states of a layer that are continued
-constexpr int kOffsetCells = 2;    // cells of the normal offset: -2 .. 2
-constexpr int kSlopeCells = 6;     // cells of the tangent's deviation: -6 .. 6
-constexpr double kSlopeStep = 3;   // times tolerance / arc length; a steady fit needs up to 10.4
-constexpr double kMaxTurn = 2.6;   // rad, of the path along one arc
+/// The states of a layer are kept apart by cells of normal offset and tangent deviation; each cell keeps the
+/// state that came furthest. Both are in units that do not depend on the curve: the tolerance, and tolerance
+/// / arc length (a steady fit has tangent deviations up to 10.4 of these).
+constexpr int kOffsetCells = 4;  // -4 .. 4
+constexpr double kOffsetStep = 0.2;
+constexpr int kSlopeCells = 12;  // -12 .. 12
+constexpr double kSlopeStep = 1.5;
+constexpr std::size_t kCells = (2 * kOffsetCells + 1) * (2 * kSlopeCells + 1);
+
+constexpr std::size_t kBeam = 8;    // states of a layer that are continued: those with the furthest reach
+constexpr double kMaxTurn = 2.6;    // rad, of the path along one arc
+constexpr double kMinCosine = 0.5;  // between arc and path at a joint
 constexpr std::array<double, 5> kFractions{0.02, 0.25, 0.5, 0.75, 0.98};  // of the feasible curvatures
-constexpr std::size_t kClosings = 8;  // closings certified before the search goes on
+constexpr std::size_t kClosings = 8;  // candidates certified before the tube is narrowed
+constexpr double kNoBound = 1e300;
+
+/// Nearest whole number in [-most, most].
+int cell_index(double x, int most) {
+  return static_cast<int>(std::clamp(x, -1.0 * most, 1.0 * most) + (most + 0.5)) - most;
+}
 
 class Search {
  public:
-  Search(const std::vector<Sample>& samples, Tube tube) : samples_(samples), tube_(tube) {}
+  Search(const std::vector<Sample>& samples, Tube tube, double start_freedom, double end_freedom)
+      : samples_(samples), tube_(tube), start_freedom_(start_freedom), end_freedom_(end_freedom) {}
 
   /// Layers of one more arc each, up to the first one with closings; true when one of these passes `accept`.
   template <class Accept>
   bool run(Accept accept) {
-    const Sample& first = samples_.front();
-    std::vector<State> layer{{first.p, first.t, 0, 0, -1, 0}};
+    std::vector<State> layer = start_layer();
     for (std::size_t count = 0; count < kMaxSegments; ++count) {
       rank(layer);
       if (layer.empty()) return false;
@@ -56,7 +69,7 @@ class Search {
       arena_.insert(arena_.end(), layer.begin(), layer.end());
       const std::vector<Closing> closings = closings_of(base);
       for (const Closing& c : closings) {
-        if (accept(c.state, c.biarc)) return true;
+        if (accept(c.state, c.arcs)) return true;
       }
       if (!closings.empty()) return false;
       layer = next_layer(base);
@@ -64,11 +77,10 @@ class Search {
     return false;
   }
 
-  /// The states from the start to `last`, without the start.
+  /// The states from the start to `last`, both included.
   std::vector<State> chain(int last) const {
     std::vector<State> states;
-    for (int i = last; arena_[static_cast<std::size_t>(i)].parent >= 0;
-         i = arena_[static_cast<std::size_t>(i)].parent) {
+    for (int i = last; i >= 0; i = arena_[static_cast<std::size_t>(i)].parent) {
       states.push_back(arena_[static_cast<std::size_t>(i)]);
     }
     std::reverse(states.begin(), states.end());
@@ -76,11 +88,29 @@ class Search {
   }
 
  private:
+  /// The start of the path, with all directions worth trying when it is free.
+  std::vector<State> start_layer() {
+    const Sample& first = samples_.front();
+    std::vector<State> layer{{first.p, first.t, 0, 0, -1, 0}};
+    if (start_freedom_ <= 0) return layer;
+    funnel_.resize(samples_.size());
+    const double length = distance(first.p, samples_[pass(layer.front())].p);
+    const double step = kSlopeStep * 0.5 * (tube_.hi - tube_.lo) / length;
+    for (int i = 1; i <= kSlopeCells && i * step <= start_freedom_; ++i) {
+      for (const double angle : {i * step, -i * step}) {
+        State s = layer.front();
+        s.t = std::cos(angle) * first.t + std::sin(angle) * left(first.t);
+        layer.push_back(s);
+      }
+    }
+    return layer;
+  }
+
   /// Fills funnel_[j] for the samples after the state's; returns the last one with a feasible arc.
   std::size_t pass(const State& s) {
     const double near2 = 4 * std::max(tube_.lo * tube_.lo, tube_.hi * tube_.hi);
     const double turn = samples_[s.at].turn;
-    Funnel f{-1e300, 1e300};
+    Funnel f{-kNoBound, kNoBound};
     std::size_t j = s.at + 1;
     for (; j < samples_.size(); ++j) {
       const Sample& sample = samples_[j];
@@ -108,63 +138,75 @@ class Search {
     while (!layer.empty() && layer.back().reach <= layer.back().at) layer.pop_back();
   }
 
+  /// The best way into a cell: an arc of curvature k from state `parent` to the normal at sample `at`.
+  struct Cell {
+    double k = 0;
+    std::size_t at = 0;
+    int parent = -1;
+  };
+
   std::vector<State> next_layer(int base) {
-    constexpr std::size_t kCells = (2 * kOffsetCells + 1) * (2 * kSlopeCells + 1);
-    std::array<State, kCells> cells;
+    std::array<Cell, kCells> cells;
     const int end = static_cast<int>(arena_.size());
     for (int i = base; i < end; ++i) {
       const State s = arena_[static_cast<std::size_t>(i)];
       const std::size_t reach = pass(s);
-      const std::size_t nearest = s.at + 1 + (reach - s.at) / 4;
-      for (std::size_t j = std::min(reach, samples_.size() - 2); j >= nearest && j > s.at; --j)
-        expand(s, i, j, cells);
+      // Stopping before half of what is possible is never better than stopping later with one of the others.
+      const std::size_t nearest = s.at + 1 + (reach - s.at) / 2;
+      for (std::size_t j = std::min(reach, samples_.size() - 2); j >= nearest; --j) expand(s, i, j, cells);
     }
     std::vector<State> layer;
-    for (const State& s : cells) {
-      if (s.at > 0) layer.push_back(s);
+    for (const Cell& c : cells) {
+      if (c.at == 0) continue;
+      const State& s = arena_[static_cast<std::size_t>(c.parent)];
+      const Arc arc = arc_towards(s.q, s.t, c.k, samples_[c.at].p);
+      layer.push_back({arc.b, arc.tb, c.k, c.at, c.parent, 0});
     }
     return layer;
   }
 
-  template <std::size_t N>
-  void expand(const State& s, int index, std::size_t j, std::array<State, N>& cells) {
+  /// The cells that arcs from s to the normal at sample j lead to. With m = n - k p, p from s to the sample:
+  /// the arc's normal there is m / |m|, |m|^2 = 1 - 2 k F (biarc.h).
+  void expand(const State& s, int index, std::size_t j, std::array<Cell, kCells>& cells) const {
     const Funnel f = funnel_[j];
-    if (!(f.hi - f.lo < 1e300)) return;  // nothing but samples at the start itself so far
+    if (!(f.hi - f.lo < kNoBound)) return;  // only samples at the start itself so far
     const Sample& sample = samples_[j];
+    const Vec2 p = sample.p - s.q;
+    const double pp = norm2(p), pn = cross(s.t, p);
+    const double along_n = dot(sample.t, left(s.t)), along_p = dot(sample.t, p);
+    const double across_n = dot(sample.t, s.t), across_p = cross(sample.t, p);
     const double tolerance = 0.5 * (tube_.hi - tube_.lo);
+    const double to_offset = 1 / (kOffsetStep * tolerance),
+                 to_slope = std::sqrt(pp) / (kSlopeStep * tolerance);
     for (const double fraction : kFractions) {
       const double k = f.lo + fraction * (f.hi - f.lo);
-      const Arc arc = arc_towards(s.q, s.t, k, sample.p);
-      const double slope = cross(sample.t, arc.tb);
-      if (dot(sample.t, arc.tb) < 0.5) continue;
-      const double offset = cross(sample.t, arc.b - sample.p);
-      const double length = distance(arc.a, arc.b);
-      const int u = static_cast<int>(std::lround(std::clamp(offset / (0.4 * tolerance), -2.0, 2.0)));
-      const int v = static_cast<int>(std::lround(
-          std::clamp(slope * length / (kSlopeStep * tolerance), -1.0 * kSlopeCells, 1.0 * kSlopeCells)));
-      State& cell =
+      const double height = pn - 0.5 * k * pp;
+      const double m = std::sqrt(std::max(0.0, 1 - 2 * k * height));
+      const double cosine = (across_n - k * across_p) / m, slope = (k * along_p - along_n) / m;
+      if (!(cosine >= kMinCosine)) continue;
+      const double offset = -2 * height / (1 + m) * cosine;
+      const int u = cell_index(offset * to_offset, kOffsetCells),
+                v = cell_index(slope * to_slope, kSlopeCells);
+      Cell& cell =
           cells[static_cast<std::size_t>((u + kOffsetCells) * (2 * kSlopeCells + 1) + v + kSlopeCells)];
-      if (j > cell.at) cell = {arc.b, arc.tb, k, j, index, 0};
+      if (j > cell.at) cell = {k, j, index};
     }
   }
 
+  /// One or two arcs from a state to the end of the path.
   struct Closing {
-    double deviation;
-    int state;
-    Biarc biarc;
+    double deviation = 0;
+    int state = 0;
+    std::vector<Arc> arcs;
   };
-  /// Biarcs from the states since `base` to the end of the path, best first.
-  std::vector<Closing> closings_of(int base) const {
+
+  /// Ways to finish from the states since `base`, fewest arcs first, then the smallest deviation.
+  std::vector<Closing> closings_of(int base) {
     std::vector<Closing> closings;
-    const Sample& last = samples_.back();
     const int end = static_cast<int>(arena_.size());
-    const double enough = std::min(-tube_.lo, tube_.hi);
-    for (int i = base; i < end; ++i) {
-      const State& s = arena_[static_cast<std::size_t>(i)];
-      if (samples_.size() - 1 - s.at > 4 * (s.reach - s.at)) continue;
-      Closing c{0, i, {}};
-      if (!best_biarc(s.q, s.t, last.p, last.t, &samples_[s.at], &last, 0, c.biarc, c.deviation)) continue;
-      if (c.deviation <= enough) closings.push_back(c);
+    for (int i = base; i < end; ++i) close_by_arc(i, closings);
+    if (closings.empty()) {
+      for (int i = base; i < end; ++i) close_by_biarc(i, closings);
     }
     std::stable_sort(closings.begin(), closings.end(),
                      [](const Closing& a, const Closing& b) { return a.deviation < b.deviation; });
@@ -172,65 +214,65 @@ class Search {
     return closings;
   }
 
+  /// A single arc, where the direction at the end is free enough.
+  void close_by_arc(int index, std::vector<Closing>& closings) {
+    const State s = arena_[static_cast<std::size_t>(index)];
+    const Sample& last = samples_.back();
+    if (end_freedom_ <= 0 || s.reach + 1 != samples_.size()) return;
+    pass(s);
+    const double k = curvature_through(s.q, s.t, last.p);
+    if (!(funnel_.back().lo <= k && k <= funnel_.back().hi)) return;
+    Arc arc = arc_towards(s.q, s.t, k, last.p);
+    arc.b = last.p;
+    const double misfit = std::abs(cross(last.t, arc.tb));
+    if (misfit > std::sin(end_freedom_) || dot(last.t, arc.tb) <= 0) return;
+    closings.push_back({misfit, index, {arc}});
+  }
+
+  void close_by_biarc(int index, std::vector<Closing>& closings) const {
+    const State& s = arena_[static_cast<std::size_t>(index)];
+    const Sample& last = samples_.back();
+    if (samples_.size() - 1 - s.at > 4 * (s.reach - s.at)) return;  // more than two arcs away
+    Biarc biarc;
+    double deviation = 0;
+    if (!best_biarc(s.q, s.t, last.p, last.t, &samples_[s.at], &last, 0, biarc, deviation)) return;
+    if (deviation <= std::min(-tube_.lo, tube_.hi))
+      closings.push_back({deviation, index, {biarc[0], biarc[1]}});
+  }
+
   const std::vector<Sample>& samples_;
   const Tube tube_;
+  const double start_freedom_, end_freedom_;
   std::vector<State> arena_;
   std::vector<Funnel> funnel_;
 };
 
-/// The runs of a found chain: joints at samples, the closing joint where the path crosses its normal.
+/// The runs of a found chain: joints at samples; the joint of a closing biarc where the path crosses its
+/// normal.
 bool make_runs(const Path& path, const std::vector<Sample>& samples, const std::vector<State>& chain,
-               const Biarc& closing, std::vector<Run>& runs) {
+               const std::vector<Arc>& closing, std::vector<Run>& runs) {
   runs.clear();
-  Point2 a = samples.front().p;
-  Vec2 ta = samples.front().t;
-  double tau = 0;
-  for (const State& s : chain) {
-    const double next = samples[s.at].tau;
-    runs.push_back({{a, ta, s.k, s.q, s.t}, tau, next});
-    a = s.q;
-    ta = s.t;
-    tau = next;
+  for (std::size_t i = 1; i < chain.size(); ++i) {
+    const State& from = chain[i - 1];
+    const State& to = chain[i];
+    runs.push_back({{from.q, from.t, to.k, to.q, to.t}, samples[from.at].tau, samples[to.at].tau});
   }
-  const Point2 joint = closing[0].b;
-  const Vec2 tangent = closing[0].tb;
-  std::size_t j = chain.empty() ? 0 : chain.back().at;
-  while (j + 1 < samples.size() && dot(samples[j].p - joint, tangent) < 0) ++j;
-  const double hand_over = parameter_on_normal(path, 0, joint, tangent, samples[j].tau, tau, path.end());
-  if (hand_over < tau) return false;
-  runs.push_back({closing[0], tau, hand_over});
-  runs.push_back({closing[1], hand_over, path.end()});
+  double tau = samples[chain.back().at].tau;
+  if (closing.size() == 2) {
+    const Point2 joint = closing[0].b;
+    const Vec2 tangent = closing[0].tb;
+    std::size_t j = chain.back().at;
+    while (j + 1 < samples.size() && dot(samples[j].p - joint, tangent) < 0) ++j;
+    const double hand_over = parameter_on_normal(path, 0, joint, tangent, samples[j].tau, tau, path.end());
+    if (hand_over < tau) return false;
+    runs.push_back({closing[0], tau, hand_over});
+    tau = hand_over;
+  }
+  runs.push_back({closing.back(), tau, path.end()});
   return true;
 }
 
 }  // namespace
-
-std::optional<FittedPiece> fit_single(const Target& target, double tangent_rad) {
-  const Path& path = *target.path;
-  const PointTangent a = path.at(0), b = path.at(path.end());
-  const Vec2 chord = b.point - a.point;
-  if (chord == Vec2{}) return std::nullopt;
-  const double at_start = std::atan2(cross(a.tangent, chord), dot(a.tangent, chord));
-  const double at_end = std::atan2(cross(chord, b.tangent), dot(chord, b.tangent));
-  // The arc turns by alpha on each side of its chord; the mean shares the misfit between both ends.
-  const double misfit = 0.5 * (at_start - at_end);
-  if (std::abs(misfit) > tangent_rad) return std::nullopt;
-  double alpha = 0.5 * (at_start + at_end);
-  if (std::abs(alpha) > 0.5 * kMaxTurn) return std::nullopt;
-  if (std::abs(alpha) <= tangent_rad) alpha = 0;  // tried as a line first
-  for (const double turn : {alpha, 0.5 * (at_start + at_end)}) {
-    const Vec2 along = unit(chord);
-    const double c = std::cos(turn), s = std::sin(turn);
-    const Arc arc{a.point, c * along - s * left(along), 2 * s / norm(chord), b.point,
-                  c * along + s * left(along)};
-    FittedPiece piece{{{arc, 0, path.end()}}, {}};
-    const double worst = std::max(std::abs(at_start - turn), std::abs(at_end - turn));
-    if (worst > tangent_rad) continue;
-    piece.deviation = certify(target, piece.runs);
-    if (piece.deviation.bound() <= target.tolerance) return piece;
-  }
-  return std::nullopt;
-}
 
 std::optional<FittedPiece> fit_minimal(const Target& target) {
   const Path& path = *target.path;
@@ -239,9 +281,10 @@ std::optional<FittedPiece> fit_minimal(const Target& target) {
   // Between samples the deviation grows by about 1 %; what the offset adds shows when a candidate is
   // certified.
   for (const double margin : {0.985, 0.95, 0.9, 0.8, 0.65, 0.5}) {
-    Search search(samples, {-margin * target.tolerance, margin * target.tolerance});
+    Search search(samples, {-margin * target.tolerance, margin * target.tolerance}, target.start_freedom,
+                  target.end_freedom);
     FittedPiece piece;
-    const auto accept = [&](int state, const Biarc& closing) {
+    const auto accept = [&](int state, const std::vector<Arc>& closing) {
       if (!make_runs(path, samples, search.chain(state), closing, piece.runs)) return false;
       piece.deviation = certify(target, piece.runs);
       return piece.deviation.bound() <= target.tolerance;

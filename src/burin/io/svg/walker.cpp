@@ -22,9 +22,6 @@ constexpr std::size_t kBytesPerUnit = 64;
 constexpr int kMaxWarnings = 100;
 
 constexpr std::string_view kContainers[] = {"g", "a"};
-/// Drawn by browsers, but nothing to cut.
-constexpr std::string_view kNoCurves[] = {"text",  "image",  "foreignObject", "flowRoot", "video",
-                                          "audio", "canvas", "iframe",        "object",   "embed"};
 /// Never drawn where they stand.
 constexpr std::string_view kDefinitions[] = {"defs",           "symbol",
                                              "clipPath",       "mask",
@@ -128,7 +125,16 @@ Result<Walker::Context> Walker::enter(int index, const Context& outer) {
   if (style->transform && !context.hidden) {
     auto map = parse_transform(*style->transform);
     if (!map) return located(std::move(map).error(), element);
-    context.map = outer.map * *map;
+    Affine2 local = *map;
+    if (style->transform_origin) {
+      const auto origin = parse_origin(*style->transform_origin, page_.px_per_inch, outer.viewport);
+      if (!origin) {
+        return Error{ErrorCode::unsupported, "transform-origin (two lengths or keywords are accepted)",
+                     where(element)};
+      }
+      local = Affine2{1, 0, 0, 1, origin->x, origin->y} * local * Affine2{1, 0, 0, 1, -origin->x, -origin->y};
+    }
+    context.map = outer.map * local;
   }
   return context;
 }
@@ -159,6 +165,7 @@ Result<void> Walker::visit(int index, const Context& outer, const UseSize* use_s
     if (element.name == "g") enter_group(element, context);
     return visit_children(index, context);
   }
+  // text, image, foreignObject and whatever else browsers may draw: nothing to cut.
   ignore(element, context.hidden ? "hidden" : nullptr);
   return {};
 }
