@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "burin/plan/laser/clearance.h"
 
@@ -22,7 +23,6 @@ struct Rise {
   Point2 center{};
   double radius = 0;   ///< 0: a line
   bool right = false;  ///< which half of the circle
-  std::uint32_t path = 0;
 };
 
 double x_at(const Rise& r, double y) {
@@ -32,7 +32,7 @@ double x_at(const Rise& r, double y) {
   return r.right ? r.center.x + w : r.center.x - w;
 }
 
-void add_arc(const Segment& s, std::uint32_t path, std::vector<Rise>& out) {
+void add_arc(const Segment& s, std::vector<Rise>& out) {
   const double r = std::abs(s.radius), sweep = geom::sweep_of(s);
   const double start = std::atan2(s.a.y - s.center.y, s.a.x - s.center.x);
   // The tangent is horizontal at +-90 degrees: cut there.
@@ -49,70 +49,59 @@ void add_arc(const Segment& s, std::uint32_t path, std::vector<Rise>& out) {
     const double end = start + sweep * cuts[i];
     const Point2 to =
         i + 1 == cuts.size() ? s.b : Point2{s.center.x + r * std::cos(end), s.center.y + r * std::sin(end)};
-    out.push_back({from, to, s.center, r, std::cos(middle) > 0, path});
+    out.push_back({from, to, s.center, r, std::cos(middle) > 0});
     from = to;
   }
 }
 
-std::vector<Rise> rises_of(const std::vector<CutPath>& paths) {
+std::vector<Rise> rises_of(const geom::ArcSpline& spline) {
   std::vector<Rise> out;
-  for (std::uint32_t i = 0; i < paths.size(); ++i) {
-    if (!paths[i].spline.closed || paths[i].role == Role::engrave) continue;
-    for (const Segment& s : paths[i].spline.segments) {
-      if (s.is_line()) {
-        out.push_back({s.a, s.b, {}, 0, false, i});
-      } else {
-        add_arc(s, i, out);
-      }
+  for (const Segment& s : spline.segments) {
+    if (s.is_line()) {
+      out.push_back({s.a, s.b, {}, 0, false});
+    } else {
+      add_arc(s, out);
     }
   }
   return out;
 }
 
-class Containers {
- public:
-  explicit Containers(const std::vector<CutPath>& paths) : rises_(rises_of(paths)), tree_(boxes()) {}
+std::vector<Box2> boxes_of(const std::vector<Rise>& rises) {
+  std::vector<Box2> all;
+  all.reserve(rises.size());
+  for (const Rise& r : rises) {
+    Box2 b;
+    b.add(r.a);
+    b.add(r.b);
+    if (r.radius != 0) {
+      // A half of a circle bulges beyond its ends to the side at most to the radius.
+      b.lo.x = std::min(b.lo.x, r.center.x - r.radius);
+      b.hi.x = std::max(b.hi.x, r.center.x + r.radius);
+    }
+    all.push_back(b);
+  }
+  return all;
+}
 
-  /// Closed paths with a winding number other than 0 about p, in rising order.
-  std::vector<std::uint32_t> of(Point2 p) const {
-    std::vector<std::pair<std::uint32_t, int>> hits;
+/// A closed path that answers which points it contains in about the logarithm of its segments.
+class Container {
+ public:
+  explicit Container(const geom::ArcSpline& spline) : rises_(rises_of(spline)), tree_(boxes_of(rises_)) {}
+
+  bool contains(Point2 p) const {
     const Box2 ray{p, {tree_.bounds().hi.x, p.y}};
-    if (ray.empty()) return {};
+    if (ray.empty()) return false;
+    int winding = 0;
     tree_.query(ray, [&](std::uint32_t i) {
       const Rise& r = rises_[i];
       const bool up = r.a.y <= p.y && p.y < r.b.y, down = r.b.y <= p.y && p.y < r.a.y;
-      if ((up || down) && x_at(r, p.y) > p.x) hits.emplace_back(r.path, up ? 1 : -1);
+      if ((up || down) && x_at(r, p.y) > p.x) winding += up ? 1 : -1;
       return true;
     });
-    std::sort(hits.begin(), hits.end());
-    std::vector<std::uint32_t> in;
-    for (std::size_t i = 0; i < hits.size();) {
-      int winding = 0;
-      const std::uint32_t path = hits[i].first;
-      for (; i < hits.size() && hits[i].first == path; ++i) winding += hits[i].second;
-      if (winding != 0) in.push_back(path);
-    }
-    return in;
+    return winding != 0;
   }
 
  private:
-  std::vector<Box2> boxes() const {
-    std::vector<Box2> all;
-    all.reserve(rises_.size());
-    for (const Rise& r : rises_) {
-      Box2 b;
-      b.add(r.a);
-      b.add(r.b);
-      if (r.radius != 0) {
-        // A half of a circle bulges beyond its ends to the side at most to the radius.
-        b.lo.x = std::min(b.lo.x, r.center.x - r.radius);
-        b.hi.x = std::max(b.hi.x, r.center.x + r.radius);
-      }
-      all.push_back(b);
-    }
-    return all;
-  }
-
   std::vector<Rise> rises_;
   BoxTree tree_;
 };
@@ -130,28 +119,39 @@ std::array<Point2, 3> witnesses(const geom::ArcSpline& spline) {
 std::vector<std::uint32_t> path_parents(const std::vector<CutPath>& paths, double point_mm) {
   const std::size_t n = paths.size();
   std::vector<double> area(n, 0);
-  std::vector<Box2> box(n);
+  std::vector<Box2> box(n), closed_box;
+  std::vector<std::uint32_t> closed;
   for (std::size_t i = 0; i < n; ++i) {
-    if (paths[i].spline.closed) area[i] = std::abs(geom::signed_area(paths[i].spline));
     box[i] = geom::bounds_of(paths[i].spline);
+    if (!paths[i].spline.closed || paths[i].role == Role::engrave || paths[i].spline.empty()) continue;
+    area[i] = std::abs(geom::signed_area(paths[i].spline));
+    closed.push_back(static_cast<std::uint32_t>(i));
+    closed_box.push_back(box[i].grown(point_mm));
   }
-  const Containers containers(paths);
+  const auto smaller = [&](std::uint32_t a, std::uint32_t b) {
+    return area[a] != area[b] ? area[a] < area[b] : a < b;
+  };
+  const BoxTree tree(closed_box);
+  std::vector<std::optional<Container>> containers(n);
   std::vector<std::uint32_t> parents(n, kNoParent);
+  std::vector<std::uint32_t> candidates;
   for (std::uint32_t i = 0; i < n; ++i) {
     if (paths[i].role == Role::engrave || paths[i].spline.empty()) continue;
-    std::vector<std::uint32_t> in;
-    for (const Point2 p : witnesses(paths[i].spline)) {
-      for (const std::uint32_t c : containers.of(p)) in.push_back(c);
-    }
-    std::sort(in.begin(), in.end());
-    for (std::size_t k = 0; k + 1 < in.size(); ++k) {
-      const std::uint32_t c = in[k];
-      if (c == i || in[k + 1] != c) continue;  // at least two of the three points
-      const Box2 room = box[c].grown(point_mm);
-      const bool larger = area[c] > area[i] || (area[c] == area[i] && c > i);
-      if (!larger || !room.contains(box[i].lo) || !room.contains(box[i].hi)) continue;
-      const std::uint32_t best = parents[i];
-      if (best == kNoParent || area[c] < area[best] || (area[c] == area[best] && c < best)) parents[i] = c;
+    candidates.clear();
+    tree.query({box[i].lo, box[i].lo}, [&](std::uint32_t k) {
+      const std::uint32_t c = closed[k];
+      if (c != i && smaller(i, c) && closed_box[k].contains(box[i].hi)) candidates.push_back(c);
+      return true;
+    });
+    std::sort(candidates.begin(), candidates.end(), smaller);
+    const auto points = witnesses(paths[i].spline);
+    for (const std::uint32_t c : candidates) {
+      if (!containers[c]) containers[c].emplace(paths[c].spline);
+      int inside = 0;
+      for (const Point2 p : points) inside += containers[c]->contains(p);
+      if (2 * inside < static_cast<int>(points.size())) continue;
+      parents[i] = c;
+      break;
     }
   }
   return parents;

@@ -87,6 +87,10 @@ void Collector::arc(const cl::Arc& arc) {
 
 Collector collect(const cl::Program& program, const MotionLimits& limits, double feed_mm_min) {
   Collector c{limits, feed_mm_min / 60};
+  if (program.from) {
+    c.at = program.from->tip;
+    c.known = true;
+  }
   for (const cl::Record& record : program.records) {
     if (const auto* rapid = std::get_if<cl::Rapid>(&record)) {
       c.straight(rapid->to.tip, limits.rapid_mm_min / 60, true);

@@ -89,6 +89,14 @@ TEST(EstimateTime, RapidsRunAtRapidSpeed) {
   EXPECT_NEAR(estimate_time(p, kLimits, 100), 1000 / v + v / kA, 1e-9);
 }
 
+TEST(EstimateTime, TheFirstMoveCountsWhenTheStartIsKnown) {
+  cl::Program p = start(), q;
+  p.add(cl::Rapid{at(1000, 0)});
+  q.from = at(0, 0);
+  q.add(cl::Rapid{at(1000, 0)});
+  EXPECT_EQ(estimate_time(q, kLimits, 100), estimate_time(p, kLimits, 100));
+}
+
 TEST(EstimateTime, NonsenseLimitsDoNotBreakIt) {
   cl::Program p = start();
   p.add(cl::Feed{at(100, 0)});
