@@ -69,16 +69,16 @@ Target make_target(const Path& path, double d, double tolerance) {
   return target;
 }
 
+/// `tangent_rad`: what a single arc's directions at the ends may be off; otherwise they are kept.
 std::optional<FittedPiece> fit_with(FitMethod method, const Target& target, double tangent_rad) {
-  // Two pieces that meet smoothly may each use up this part of what counts as smooth.
-  constexpr double kTangentShare = 0.25;
-  if (auto single = fit_single(target, kTangentShare * tangent_rad)) return single;
+  if (auto single = fit_single(target, tangent_rad)) return single;
   return method == FitMethod::minimal ? fit_minimal(target) : fit_bisect(target);
 }
 
 /// The piece in parts, divided where the offset curve becomes singular: there it turns back, and only a joint
 /// at just that point with just that direction keeps its regular parts in step with the arcs.
-std::optional<FittedPiece> fit_divided(FitMethod method, const Target& target, double tangent_rad) {
+std::optional<FittedPiece> fit_divided(FitMethod method, const Target& target) {
+  constexpr double kKeptDirection = 1e-9;  // rad: the joints between the parts stay G1
   const double end = target.path->end();
   std::vector<double> bounds{0};
   for (const Range& r : target.singular.ranges) {
@@ -97,7 +97,7 @@ std::optional<FittedPiece> fit_divided(FitMethod method, const Target& target, d
     Target divided = make_target(path, singular ? 0 : target.d, target.tolerance);
     if (i == 0) divided.start_freedom = target.start_freedom;
     if (i + 2 == bounds.size()) divided.end_freedom = target.end_freedom;
-    auto fitted = fit_with(method, divided, tangent_rad);
+    auto fitted = fit_with(method, divided, kKeptDirection);
     if (!fitted) fitted = fit_bisect(divided);
     if (!fitted) return std::nullopt;
     // Parameters of the parts are not needed any more: only arcs and the bound are.
@@ -113,12 +113,14 @@ std::optional<FittedPiece> fit_piece(const Path& path, const FitOptions& options
   Target target = make_target(path, options.offset_mm, options.tolerance_mm);
   target.start_freedom = start_freedom;
   target.end_freedom = end_freedom;
-  if (auto found = fit_with(options.method, target, options.tangent_rad)) return found;
+  // Two curves that meet smoothly may each use up this part of what counts as smooth.
+  constexpr double kTangentShare = 0.25;
+  if (auto found = fit_with(options.method, target, kTangentShare * options.tangent_rad)) return found;
   if (!target.singular.ranges.empty()) {
     // What the ranges leave unseen comes on top.
     target.tolerance -= target.singular.slack;
     if (target.tolerance > 0) {
-      if (auto found = fit_divided(options.method, target, options.tangent_rad)) return found;
+      if (auto found = fit_divided(options.method, target)) return found;
     }
     target.tolerance = options.tolerance_mm;
   }
@@ -179,11 +181,13 @@ Result<FitResult> fit_arc_spline(const Curve2& curve, const FitOptions& options)
     }
     result.piece_starts.push_back(static_cast<std::uint32_t>(result.segments.size()));
     for (const Run& run : piece->runs) result.segments.push_back(to_segment(run.arc));
-    // Ends that differ by rounding (a corner seen from both sides, the curve's own ends) become one.
-    result.segments[result.piece_starts.back()].a = i == 0 ? start_point(curve) : paths[i].at(0).point;
-    result.segments.back().b = i + 1 == paths.size() ? end_point(curve) : paths[i + 1].at(0).point;
     result.max_deviation_mm = std::max(result.max_deviation_mm, piece->deviation.bound());
   }
+  // Ends that differ by rounding (divisions and corners seen from both sides, the curve's own ends) become
+  // one.
+  for (std::size_t i = 1; i < result.segments.size(); ++i) result.segments[i].a = result.segments[i - 1].b;
+  result.segments.front().a = start_point(curve);
+  result.segments.back().b = end_point(curve);
   return result;
 }
 
