@@ -115,13 +115,21 @@ class Arrangement {
       const auto a = static_cast<std::uint32_t>(i), b = static_cast<std::uint32_t>(j);
       const Segment &s = curves_.segments[i], &t = curves_.segments[j];
       if (next_of(a) == b) {
-        add(a, b, meet_neighbours(s, t, options_.eps));
+        add_neighbours(a, b);
       } else if (next_of(b) == a) {
-        add(b, a, meet_neighbours(t, s, options_.eps));
+        add_neighbours(b, a);
       } else {
         add(a, b, meet(s, t, options_.eps));
       }
     });
+  }
+
+  void add_neighbours(std::uint32_t i, std::uint32_t j) {
+    const Segment &s = curves_.segments[i], &t = curves_.segments[j];
+    const Meeting meeting = meet_neighbours(s, t, options_.eps);
+    // Where the second turns back along the first, the way out and the way back are separate chains.
+    if (std::holds_alternative<Overlap>(meeting)) add_cut(i, j, t.a);
+    add(i, j, meeting);
   }
 
   void add(std::uint32_t i, std::uint32_t j, const Meeting& meeting) {

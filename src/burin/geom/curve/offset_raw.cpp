@@ -122,7 +122,7 @@ class RawBuilder {
     // A turn back by a half turn within rounding is the tip of a spike: a sector is right, whichever it is.
     constexpr double kHalfTurn = 1e-9;
     const double gap = d_ * std::abs(turn);
-    if (cosine > 0 && gap <= join_mm_ && !flips(p.s, gap) && !flips(q.s, gap)) {
+    if (cosine > 0 && gap <= join_mm_ && !flips(p, gap) && !flips(q, gap)) {
       if (!p.collapsed && !q.collapsed && !(p.s.b == q.s.a)) {
         const Point2 middle = lerp(p.s.b, q.s.a, 0.5);
         p.s.b = q.s.a = middle;
@@ -137,8 +137,8 @@ class RawBuilder {
   }
 
   /// Whether moving an end by the gap could turn a short arc into nearly a full circle.
-  static bool flips(const Segment& s, double gap) {
-    return !s.is_line() && gap > 0 && distance2(s.a, s.b) < 16 * gap * gap;
+  static bool flips(const Piece& p, double gap) {
+    return !p.collapsed && !p.s.is_line() && distance2(p.s.a, p.s.b) < 16 * gap * gap;
   }
 
   void emit(const Segment& s, bool inside) {
@@ -166,6 +166,8 @@ class RawBuilder {
     const Point2 a = p.collapsed ? v + d_ * p.n1 : from, b = q.collapsed ? v + d_ * q.n0 : to;
     emit_connector(from, a);
     Segment arc{a, b, v, d_, kCornerSource};
+    // Too short to tell its direction from the ends.
+    if (distance2(a, b) < 8 * kFlat * d_ && dot(p.n1, q.n0) > 0) arc.radius = 0;
     if (dot(p.n1, q.n0) < -0.9) {
       // Near a half turn: two arcs, split in the direction between the tangent and the one turned back.
       const Point2 middle = v + d_ * unit(left(p.n1) - left(q.n0));

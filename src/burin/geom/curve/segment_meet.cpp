@@ -35,17 +35,21 @@ Candidates line_meets_circle(const Segment& line, const Segment& arc, double eps
 }
 
 Candidates circles_meet(const Segment& s, const Segment& t, double eps) {
-  const Vec2 w = t.center - s.center;
+  // Measured from the smaller circle: from a much larger one the cancellation would cost all precision.
+  const bool s_smaller = std::abs(s.radius) <= std::abs(t.radius);
+  const Point2 c = s_smaller ? s.center : t.center;
+  const Vec2 w = s_smaller ? t.center - s.center : s.center - t.center;
+  const double r = std::min(std::abs(s.radius), std::abs(t.radius));
+  const double big = std::max(std::abs(s.radius), std::abs(t.radius));
   const double dd = norm(w);
-  const double r1 = std::abs(s.radius), r2 = std::abs(t.radius);
   // One circle within rounding of the other: what they share begins and ends at segment ends.
-  if (dd > r1 + r2 + eps || dd + eps < std::abs(r1 - r2) || dd < 1e-2 * eps) return {};
+  if (dd > r + big + eps || dd + r + eps < big || dd < 1e-2 * eps) return {};
   const Vec2 e = w / dd;
-  const double x = 0.5 * (dd + (r1 - r2) * ((r1 + r2) / dd));
-  const double half2 = (r1 - x) * (r1 + x);
-  if (half2 <= 0) return {{s.center + (x > 0 ? r1 : -r1) * e, {}}, 1};
+  const double x = 0.5 * ((dd - big) * ((dd + big) / dd) + r * (r / dd));
+  const double half2 = (r - x) * (r + x);
+  if (half2 <= 0) return {{c + (x > 0 ? r : -r) * e, {}}, 1};
   const double half = std::sqrt(half2);
-  const Point2 foot = s.center + x * e;
+  const Point2 foot = c + x * e;
   return {{foot + half * left(e), foot - half * left(e)}, 2};
 }
 
