@@ -27,9 +27,10 @@ bool same_file(const std::string& a, const std::string& b) {
   if (is_special(a) || is_special(b)) return false;
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, error);
+  // Absolute first: weakly_canonical leaves "a" as it is when there is no such file, but not "./a".
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a), error);
   if (error) return a == b;
-  const fs::path whole_b = fs::weakly_canonical(b, error);
+  const fs::path whole_b = fs::weakly_canonical(fs::absolute(b), error);
   return error ? a == b : whole_a == whole_b;
 }
 
