@@ -28,15 +28,27 @@ struct FitOptions {
   double tolerance_mm = 0.01;  ///< delta: certified bound on the deviation of the offset arcs from C_d
   double offset_mm = 0.0;      ///< d, signed, to the right of the direction of travel; 0 fits C itself
   double tangent_rad = 1e-3;   ///< corners sharper than this stay corners (the curve is split there)
+  /// How far (rad) the direction of the arcs may differ from the curve's at its two ends. 0 keeps the
+  /// direction, so that neighbouring curves stay G1. At corners of the outline nothing depends on it, and
+  /// corner_freedom() of the corner's turn saves up to an arc a curve. Corners inside the curve are treated
+  /// so in any case.
+  double start_freedom_rad = 0;
+  double end_freedom_rad = 0;
 };
+
+/// Freedom of direction (FitOptions) of the two curves that meet under this angle (rad, 0 .. pi): a quarter
+/// of the angle, so that the corner stays what it is, and at most 0.1; 0 at joints that are smooth within
+/// tangent_rad.
+double corner_freedom(double turn_rad, double tangent_rad = 1e-3);
 
 struct FitResult {
   /// Arcs and lines from C(0) to C(1); ends lie exactly on C's end points; G1 inside each smooth piece.
   std::vector<Segment> segments;
   /// Upper bound of the Hausdorff distance between the offset arc spline and the offset curve over the pieces
   /// where the offset curve is regular (1 + d kappa > 0), and of the distance between the returned arcs and C
-  /// everywhere. Proven (Bernstein coefficients), not sampled. <= tolerance_mm. 0 for lines and circular
-  /// arcs.
+  /// everywhere. At an end of free direction the offset arcs count together with the arc of radius |d| about
+  /// the end point, the one that the offset puts there. Proven (Bernstein coefficients), not sampled. <=
+  /// tolerance_mm. 0 for lines and circular arcs.
   double max_deviation_mm = 0;
   /// Index into `segments` of the first segment of each smooth piece (0 first).
   std::vector<std::uint32_t> piece_starts;

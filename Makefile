@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+# The commands people use; the build itself is CMake (CMakePresets.json). `make help` lists them.
+SHELL := /bin/bash
+JOBS ?= $(shell nproc)
+
+.PHONY: help setup build demo test bench fuzz format format-check tidy clean
+
+help:            ## this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
+
+setup:           ## install the Debian packages that are missing (root or sudo)
+	@scripts/setup
+
+build: setup     ## build the program: build/release/apps/burin/burin
+	@cmake --preset release >build-release.log 2>&1 || { cat build-release.log; rm -f build-release.log; exit 1; }
+	@rm -f build-release.log
+	@cmake --build --preset release -j $(JOBS)
+
+demo: build      ## cut three example parts and say where the pictures are
+	@scripts/demo build/release/apps/burin/burin out/demo
+
+test: build      ## all tests
+	@ctest --preset release -j $(JOBS)
+
+bench: setup     ## measure beside the peers that Debian ships; writes out/bench.json
+	@cmake --preset bench >/dev/null
+	@cmake --build --preset bench -j $(JOBS) --target burin_bench
+	@scripts/bench build/bench/bench/burin_bench out
+
+fuzz: setup      ## run every fuzzer for SECONDS_EACH (default 60) seconds under the sanitizers
+	@cmake --preset fuzz >/dev/null
+	@cmake --build --preset fuzz -j $(JOBS) --target fuzzers
+	@scripts/fuzz build/fuzz/fuzz $${SECONDS_EACH:-60}
+
+format:          ## format the sources in place
+	@git ls-files '*.h' '*.cpp' | xargs clang-format-14 -i
+
+format-check:    ## fail when a source is not formatted
+	@git ls-files '*.h' '*.cpp' | xargs clang-format-14 --dry-run -Werror
+
+tidy: build      ## clang-tidy over the files changed since BASE (default: the last day's commits)
+	@scripts/tidy build/release $(BASE)
+
+clean:           ## remove everything that was built
+	@rm -rf build out

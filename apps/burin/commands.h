@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands, one file each.
+#pragma once
+
+namespace burin::cli {
+
+class Cli;
+
+void add_laser(Cli& cli);
+void add_kerf(Cli& cli);
+void add_post(Cli& cli);
+
+}  // namespace burin::cli
