@@ -342,7 +342,10 @@ Result<void> run_laser(const LaserArgs& args, Session& session) {
   if (!plan) return plan.error();
   auto drawing = read_drawing(args, session);
   if (!drawing) return drawing.error();
-  if (auto ok = session.reserve_output(nc_path); !ok) return ok;
+  // A name given with -o is reserved already.
+  if (session.common.output.empty()) {
+    if (auto ok = session.reserve_output(nc_path); !ok) return ok;
+  }
 
   const auto in_file = [&](Error error) {
     if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.drawing;
@@ -350,6 +353,7 @@ Result<void> run_laser(const LaserArgs& args, Session& session) {
   };
   auto job = laser::plan_laser(*drawing, *plan, session.diagnostics, session.progress());
   session.end_progress();
+  session.diagnostics.locate(args.drawing);
   if (!job) return in_file(job.error());
   job->toolpath.program.name = fs::path(args.drawing).stem().string();
   auto nc = post::emit(job->toolpath.program, *dialect, {}, session.diagnostics);

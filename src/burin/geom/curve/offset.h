@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Offset of a plane region bounded by arc splines (Park & Ahn 2007, 4.2 steps 2-4), exact for lines and arcs.
 //
-// The region is what lies to the left of its contours: outer contours counter-clockwise, holes clockwise, islands
-// in holes counter-clockwise again. Growing by d > 0 gives the region of all points within d of it (Minkowski sum
-// with a disk: convex corners become arcs of radius d), shrinking by d < 0 the complement of the grown complement.
+// The region is what lies to the left of its contours: outer contours counter-clockwise, holes clockwise,
+// islands in holes counter-clockwise again. Growing by d > 0 gives the region of all points within d of it
+// (Minkowski sum with a disk: convex corners become arcs of radius d), shrinking by d < 0 the complement of
+// the grown complement.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +21,9 @@ struct OffsetOptions {
 };
 
 struct OffsetResult {
-  /// Closed, simple, pairwise disjoint (they may touch), outer counter-clockwise, holes clockwise; segments keep
-  /// the `source` of the input segment they run beside, kCornerSource on arcs about convex corners. Sorted
-  /// deterministically.
+  /// Closed, simple, pairwise disjoint (they may touch), outer counter-clockwise, holes clockwise; segments
+  /// keep the `source` of the input segment they run beside, kCornerSource on arcs about convex corners.
+  /// Sorted deterministically.
   std::vector<ArcSpline> contours;
   /// Parallel to `contours`: index of the input contour that gave its first segment.
   std::vector<std::uint32_t> from;
@@ -33,11 +34,11 @@ struct OffsetResult {
 };
 
 /// Preconditions on the contours (checked: geometry error that names the contour): closed, at least two
-/// segments, finite, consistent arcs. They may touch within tolerance, but must not cross deeper than point_mm:
-/// where they do, the result is the offset of the region of positive winding.
-/// Guarantees: every point of the result's boundary is at distance |d| of the input's boundary within 1e-6 mm and
-/// every point at less than |d| - 1e-6 mm is on the right side of it.
-/// Cost: O(n log n) for drawings (n segments; more only when n boundary pieces come within d of each other).
+/// segments, finite, consistent arcs. They may touch within tolerance, but must not cross deeper than
+/// point_mm: where they do, the result is the offset of the region of positive winding. Guarantees: every
+/// point of the result's boundary is at distance |d| of the input's boundary within 1e-6 mm and every point
+/// at less than |d| - 1e-6 mm is on the right side of it. Cost: O(n log n) for drawings (n segments; more
+/// only when n boundary pieces come within d of each other).
 Result<OffsetResult> offset_region(const std::vector<ArcSpline>& contours, double d_mm,
                                    const OffsetOptions& options = {});
 

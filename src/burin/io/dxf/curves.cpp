@@ -215,6 +215,9 @@ class Converter {
       curve->points[i] = spline.points.empty() ? plane(curve->points[i]) : xy(map_(spline.points[i]));
     }
     add_spline(*curve);
+    const bool closed =
+        std::all_of(out_.paths.begin(), out_.paths.end(), [](const Path& p) { return p.closed; });
+    if (spline.closed() && !closed) info("spline_open", "is marked as closed, but its ends do not meet");
   }
 
   void add_spline(const geom::Nurbs2& spline) {

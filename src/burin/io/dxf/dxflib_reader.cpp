@@ -41,7 +41,7 @@ class Collector : public DL_CreationAdapter {
     layer.name = decoded(data.name);
     layer.frozen = (data.flags & 1) != 0;
     layer.off = attributes.getColor() < 0;
-    layer.color.index = std::abs(attributes.getColor());
+    layer.color.index = std::abs(std::clamp(attributes.getColor(), -Color::kByLayer, Color::kByLayer));
     layer.color.rgb = attributes.getColor24();
     if (layer.color.index == Color::kByLayer || layer.color.index == Color::kByBlock) layer.color.index = 7;
     skeleton_.model.layers.insert_or_assign(to_lower(layer.name), layer);

@@ -104,6 +104,14 @@ class Expander {
     return context.way + item.kind + (item.handle.empty() ? "" : " " + item.handle);
   }
 
+  // The way into an insertion. Every member carries it, so that deep nesting leaves out the middle.
+  static std::string way_to(const Item& item, const Context& context) {
+    constexpr std::size_t kLongest = 160;
+    const std::string own = item.kind + (item.handle.empty() ? "" : " " + item.handle);
+    if (context.way.size() <= kLongest) return context.way + own;
+    return context.way.substr(0, context.way.find('/')) + "/.../" + own;
+  }
+
   const Layer* find_layer(const std::string& name) const {
     const auto at = model_.layers.find(to_lower(name));
     return at == model_.layers.end() ? nullptr : &at->second;
@@ -223,8 +231,7 @@ class Expander {
         }
         const geom::Vec3 offset{column * insert.column_spacing, row * insert.row_spacing, 0};
         inner.map = turned * Map3::shift(offset) * scaled;
-        inner.way = id_of(item, context);
-        if (!context.in_block()) inner.way = item.kind + (item.handle.empty() ? "" : " " + item.handle);
+        inner.way = way_to(item, context);
         if (array) inner.way += "(" + std::to_string(row + 1) + "," + std::to_string(column + 1) + ")";
         inner.way += '/';
         if (auto done = take_all(block.items, inner); !done) return done;

@@ -86,6 +86,7 @@ class Writer {
 
   bool entity() {
     const std::string_view kind = record_.name;
+    if (!layer_name_fits()) return false;
     const auto common = [&] { return begin() && integers({62, 420}) && reals({210, 220, 230}); };
     if (kind == "LINE") return common() && reals({10, 20, 30, 11, 21, 31});
     if (kind == "CIRCLE") return common() && reals({10, 20, 30, 40});
@@ -159,14 +160,22 @@ class Writer {
     });
   }
 
+  // Every entity of every insertion carries its layer: the length must be bounded.
+  bool layer_name_fits() {
+    return each([&](const Tag& tag) { return tag.code != 8 || fits(tag, trim(tag.value)); });
+  }
+
+  bool fits(const Tag& tag, std::string_view text) {
+    if (text.size() <= kLongestName) return true;
+    return fail(tag, std::string(record_.name) + ": a name of " + std::to_string(text.size()) +
+                         " bytes (at most 255 characters are allowed)");
+  }
+
   bool names(Codes codes) {
     return each([&](const Tag& tag) {
       if (!contains(codes, tag.code)) return true;
       const auto text = trim(tag.value);
-      if (text.size() > kLongestName) {
-        return fail(tag, std::string(record_.name) + ": a name of " + std::to_string(text.size()) +
-                             " bytes (at most 255 characters are allowed)");
-      }
+      if (!fits(tag, text)) return false;
       put(tag.code, text);
       return true;
     });

@@ -12,33 +12,12 @@ namespace burin::io::dxf {
 namespace {
 
 // Kinds that hold no outline. What is neither here nor read carries geometry that somebody may want cut.
-constexpr std::array<std::string_view, 27> kWithoutOutline = {"ACAD_PROXY_ENTITY",
-                                                              "ACAD_TABLE",
-                                                              "ARC_DIMENSION",
-                                                              "ATTDEF",
-                                                              "ATTRIB",
-                                                              "DIMENSION",
-                                                              "GEOPOSITIONMARKER",
-                                                              "HATCH",
-                                                              "IMAGE",
-                                                              "LEADER",
-                                                              "LIGHT",
-                                                              "MLEADER",
-                                                              "MTEXT",
-                                                              "MULTILEADER",
-                                                              "OLE2FRAME",
-                                                              "OLEFRAME",
-                                                              "POINT",
-                                                              "RAY",
-                                                              "RTEXT",
-                                                              "SECTION",
-                                                              "SOLID",
-                                                              "TEXT",
-                                                              "TOLERANCE",
-                                                              "TRACE",
-                                                              "VIEWPORT",
-                                                              "WIPEOUT",
-                                                              "XLINE"};
+constexpr std::array<std::string_view, 25> kWithoutOutline = {
+    "ACAD_TABLE",  "ARC_DIMENSION", "ATTDEF",    "ATTRIB", "DIMENSION", "GEOPOSITIONMARKER",
+    "HATCH",       "IMAGE",         "LEADER",    "LIGHT",  "MLEADER",   "MTEXT",
+    "MULTILEADER", "OLE2FRAME",     "OLEFRAME",  "POINT",  "RAY",       "RTEXT",
+    "SOLID",       "TEXT",          "TOLERANCE", "TRACE",  "VIEWPORT",  "WIPEOUT",
+    "XLINE"};
 
 std::string printable_kind(std::string_view name) {
   constexpr std::size_t kLongest = 64;

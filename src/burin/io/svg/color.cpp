@@ -224,7 +224,8 @@ std::optional<std::uint32_t> from_function(std::string_view name, std::string_vi
   if (count < 3 || !scan.done()) return std::nullopt;
   if (name[0] == 'h') return from_hsl(values[0], values[1] / 100, values[2] / 100);
   std::uint32_t rgb = 0;
-  for (std::size_t i = 0; i < 3; ++i) rgb = rgb << 8 | channel(percent[i] ? values[i] * 2.55 : values[i]);
+  for (std::size_t i = 0; i < 3; ++i)
+    rgb = rgb << 8 | channel(percent[i] ? values[i] * 255 / 100 : values[i]);
   return rgb;
 }
 

@@ -276,6 +276,23 @@ class Converter {
   bool warned_comment_ = false;
 };
 
+/// Bounds the XML tree before it is built, by the characters that every node and every attribute needs.
+Result<void> check_size(std::string_view text, std::size_t max_entities) {
+  constexpr std::size_t kTagsPerEntity = 4;  // start and end of the element, and as much beside it
+  constexpr std::size_t kAttributesPerEntity = 20;
+  constexpr std::size_t kFree = 10'000;  // metadata and definitions of a small drawing
+  const auto tags = static_cast<std::size_t>(std::count(text.begin(), text.end(), '<'));
+  const auto attributes = static_cast<std::size_t>(std::count(text.begin(), text.end(), '='));
+  if (tags > kFree + kTagsPerEntity * max_entities ||
+      attributes > kFree + kAttributesPerEntity * max_entities) {
+    return Error{
+        ErrorCode::range,
+        "more elements or attributes than the limit of " + std::to_string(max_entities) + " entities allows",
+        {}};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string_view Element::get(std::string_view attribute, Namespace ns_of) const {
@@ -304,13 +321,16 @@ int Document::find(std::string_view id) const {
   return found == by_id.end() ? -1 : found->second;
 }
 
-Result<Document> parse_document(std::string_view bytes, const std::string& file_name,
+Result<Document> parse_document(std::string_view bytes, const ReadOptions& options,
                                 Diagnostics& diagnostics) {
   auto text = to_utf8(bytes);
   if (!text) {
     Error error = std::move(text).error();
-    error.where.file = file_name;
+    error.where.file = options.file_name;
     return error;
+  }
+  if (auto small = check_size(*text, options.max_entities); !small) {
+    return Error{small.error().code, small.error().message, {options.file_name, 0, 0, {}}};
   }
   Document document;
   document.byte_count = text->size();
@@ -318,7 +338,7 @@ Result<Document> parse_document(std::string_view bytes, const std::string& file_
   constexpr unsigned kFlags = pugi::parse_default | pugi::parse_comments | pugi::parse_doctype;
   const pugi::xml_parse_result parsed =
       xml->load_buffer(text->data(), text->size(), kFlags, pugi::encoding_utf8);
-  Converter converter(document, *text, file_name, diagnostics);
+  Converter converter(document, *text, options.file_name, diagnostics);
   if (!parsed) {
     const auto offset = static_cast<std::size_t>(std::max<std::ptrdiff_t>(parsed.offset, 0));
     return converter.fail_at(std::min(offset, text->size()),

@@ -11,6 +11,7 @@
 
 #include "burin/base/diagnostics.h"
 #include "burin/base/result.h"
+#include "burin/io/drawing/drawing.h"
 
 namespace burin::io::svg {
 
@@ -57,8 +58,8 @@ struct Document {
 };
 
 /// Errors: syntax with line and column (not well-formed XML, no <svg> root), unsupported (compressed, drawing
-/// parts inside entities), range (entity bombs).
-Result<Document> parse_document(std::string_view bytes, const std::string& file_name,
-                                Diagnostics& diagnostics);
+/// parts inside entities), range (entity bombs; more elements than the limits allow: the memory of the XML
+/// tree is several times the size of the file).
+Result<Document> parse_document(std::string_view bytes, const ReadOptions& options, Diagnostics& diagnostics);
 
 }  // namespace burin::io::svg

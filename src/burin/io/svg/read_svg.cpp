@@ -12,7 +12,7 @@ namespace burin::io {
 namespace {
 
 Result<Drawing> read(std::string_view bytes, const ReadOptions& options, Diagnostics& diagnostics) {
-  auto document = svg::parse_document(bytes, options.file_name, diagnostics);
+  auto document = svg::parse_document(bytes, options, diagnostics);
   if (!document) return document.error();
   auto page = svg::page_of(*document, options);
   if (!page) return page.error();

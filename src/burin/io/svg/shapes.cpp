@@ -67,29 +67,16 @@ void share_radii(double& rx, double& ry) {
   ry = or_zero(ry);
 }
 
-Result<Outline> rect(const Element& element, const LengthFrame& frame) {
-  constexpr std::array<Field, 6> kFields{{{"x", Axis::x, false},
-                                          {"y", Axis::y, false},
-                                          {"width", Axis::x, true},
-                                          {"height", Axis::y, true},
-                                          {"rx", Axis::x, true},
-                                          {"ry", Axis::y, true}}};
-  const auto fields = read_fields(element, frame, kFields);
-  if (!fields) return fields.error();
-  auto [x, y, w, h, rx, ry] = *fields;
-  x = or_zero(x), y = or_zero(y), w = or_zero(w), h = or_zero(h);
-  if (w == 0 || h == 0) return nothing();
-  share_radii(rx, ry);
-  rx = std::min(rx, w / 2);
-  ry = std::min(ry, h / 2);
-  if (rx == 0 || ry == 0) rx = ry = 0;
+/// Starts behind the first corner, as the standard says. Precondition: 0 <= rx <= w / 2, 0 <= ry <= h / 2, w,
+/// h > 0, both radii zero or none.
+Outline rounded_rect(double x, double y, double w, double h, double rx, double ry) {
   const double right = x + w, bottom = y + h;
   // Where a side has no straight part left, both of its corners must meet in the same point.
   const double x1 = x + rx, x2 = rx == w / 2 ? x1 : right - rx;
   const double y1 = y + ry, y2 = ry == h / 2 ? y1 : bottom - ry;
   OutlineBuilder builder;
-  const auto corner = [&](Point2 p) {
-    rx > 0 ? builder.arc_to(rx, ry, 0, false, true, p) : builder.line_to(p);
+  const auto corner = [&builder, rx, ry](Point2 p) {
+    if (rx > 0) builder.arc_to(rx, ry, 0, false, true, p);
   };
   builder.move_to({x1, y});
   builder.line_to({x2, y});
@@ -102,6 +89,26 @@ Result<Outline> rect(const Element& element, const LengthFrame& frame) {
   corner({x1, y});
   builder.close();
   return builder.finish();
+}
+
+Result<Outline> rect(const Element& element, const LengthFrame& frame) {
+  constexpr std::array<Field, 6> kFields{{{"x", Axis::x, false},
+                                          {"y", Axis::y, false},
+                                          {"width", Axis::x, true},
+                                          {"height", Axis::y, true},
+                                          {"rx", Axis::x, true},
+                                          {"ry", Axis::y, true}}};
+  const auto fields = read_fields(element, frame, kFields);
+  if (!fields) return fields.error();
+  auto [x, y, w, h, rx, ry] = *fields;
+  w = or_zero(w);
+  h = or_zero(h);
+  if (w == 0 || h == 0) return nothing();
+  share_radii(rx, ry);
+  rx = std::min(rx, w / 2);
+  ry = std::min(ry, h / 2);
+  if (rx == 0 || ry == 0) rx = ry = 0;
+  return rounded_rect(or_zero(x), or_zero(y), w, h, rx, ry);
 }
 
 Result<Outline> circle(const Element& element, const LengthFrame& frame) {
@@ -167,7 +174,12 @@ Result<Outline> polyline(const Element& element, bool closed, std::size_t max_cu
 
 Result<double> LengthFrame::read(const Element& element, std::string_view name, Axis axis,
                                  double fallback) const {
-  const std::string_view text = trim(element.get(name));
+  return read_text(element.get(name), name, axis, fallback);
+}
+
+Result<double> LengthFrame::read_text(std::string_view text, std::string_view name, Axis axis,
+                                      double fallback) const {
+  text = trim(text);
   if (text.empty() || text == "auto") return fallback;
   const std::string shown = std::string(name) + "=\"" + std::string(text.substr(0, 40)) + "\"";
   const auto length = parse_length(text);

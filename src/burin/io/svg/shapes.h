@@ -17,6 +17,8 @@ struct LengthFrame {
   /// Value of the attribute in user units, `fallback` when it is absent or "auto".
   /// Errors: syntax (no length), unsupported (percentage without a page size).
   Result<double> read(const Element& element, std::string_view name, Axis axis, double fallback) const;
+  /// The same for a text that is given; `name` is for messages.
+  Result<double> read_text(std::string_view text, std::string_view name, Axis axis, double fallback) const;
 };
 
 bool is_shape(const Element& element);

@@ -85,6 +85,7 @@ Result<ElementStyle> Styles::of(int element, const InheritedStyle& parent) {
   for (const Property property : {Property::clip_path, Property::mask}) {
     if (const auto value = declared.get(property)) style.clipped = style.clipped || keyword(*value) != "none";
   }
+  style.transform_origin = declared.get(Property::transform_origin);
   style.transform = declared.get(Property::transform);
   return style;
 }

@@ -32,7 +32,8 @@ struct InheritedStyle {
 struct ElementStyle {
   InheritedStyle inherited;
   bool displayed = true;
-  bool clipped = false;                       ///< has a clip-path or mask
+  bool clipped = false;  ///< has a clip-path or mask
+  std::optional<std::string_view> transform_origin;
   std::optional<std::string_view> transform;  ///< of the property or the attribute
 };
 

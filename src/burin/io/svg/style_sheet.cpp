@@ -9,9 +9,10 @@
 namespace burin::io::svg {
 namespace {
 
-/// Compound tests that a sheet may ask for: a large real drawing (10^5 elements, a class each) stays near
-/// 10^6.
-constexpr std::int64_t kMaxWork = 100'000'000;
+/// Compound tests that a sheet may ask for: a base, and as many for each element as fifty rules of its name
+/// cost.
+constexpr std::int64_t kBaseWork = 2'000'000;
+constexpr std::int64_t kWorkPerElement = 50;
 constexpr std::size_t kMaxCompounds = 16;
 
 struct PropertyName {
@@ -25,6 +26,7 @@ constexpr PropertyName kProperties[kPropertyCount] = {
     {"display", Property::display},
     {"visibility", Property::visibility},
     {"transform", Property::transform},
+    {"transform-origin", Property::transform_origin},
     {"clip-path", Property::clip_path},
     {"mask", Property::mask},
 };
@@ -136,7 +138,8 @@ void CascadedStyle::apply(const Declaration& declaration, int origin, std::uint3
   slot = {declaration.value, rank};
 }
 
-StyleSheet::StyleSheet(const Document& document) : document_(document), work_left_(kMaxWork) {
+StyleSheet::StyleSheet(const Document& document) : document_(document), work_left_(kBaseWork) {
+  work_left_ += kWorkPerElement * static_cast<std::int64_t>(document.elements.size());
   texts_.reserve(document.style_texts.size());  // the rules hold views into the texts
   for (const std::string& text : document.style_texts) {
     texts_.push_back(without_comments(text));

@@ -16,8 +16,18 @@
 namespace burin::io::svg {
 
 /// The properties that matter for cutting.
-enum class Property { color, stroke, fill, display, visibility, transform, clip_path, mask };
-inline constexpr std::size_t kPropertyCount = 8;
+enum class Property {
+  color,
+  stroke,
+  fill,
+  display,
+  visibility,
+  transform,
+  transform_origin,
+  clip_path,
+  mask
+};
+inline constexpr std::size_t kPropertyCount = 9;
 std::optional<Property> property_of(std::string_view name);
 
 struct Declaration {

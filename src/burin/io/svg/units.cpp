@@ -77,6 +77,34 @@ std::optional<double> length_in_user_units(Length length, double px_per_inch, co
   return length.value / 100 * whole;
 }
 
+std::optional<geom::Point2> parse_origin(std::string_view text, double px_per_inch,
+                                         const Viewport& viewport) {
+  std::vector<std::string> words;
+  for (text = trim(text); !text.empty() && words.size() < 3; text = trim(text)) {
+    const std::size_t end = std::min(text.find_first_of(" \t\n\r,"), text.size());
+    words.push_back(to_lower(text.substr(0, end)));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  if (words.empty() || !text.empty()) return std::nullopt;
+  if (words.size() == 1) words.emplace_back("center");
+  // Keywords may stand in either order: "top left".
+  if (words[0] == "top" || words[0] == "bottom" || words[1] == "left" || words[1] == "right") {
+    std::swap(words[0], words[1]);
+  }
+  const auto place = [&](const std::string& word, Axis axis) -> std::optional<double> {
+    const bool low = word == (axis == Axis::x ? "left" : "top"),
+               high = word == (axis == Axis::x ? "right" : "bottom");
+    if (low) return 0.0;
+    const auto length = high               ? std::optional(Length{100, Unit::percent})
+                        : word == "center" ? std::optional(Length{50, Unit::percent})
+                                           : parse_length(word);
+    return length ? length_in_user_units(*length, px_per_inch, viewport, axis) : std::nullopt;
+  };
+  const auto x = place(words[0], Axis::x), y = place(words[1], Axis::y);
+  if (!x || !y) return std::nullopt;
+  return geom::Point2{*x, *y};
+}
+
 std::optional<ViewBox> parse_view_box(std::string_view text) {
   std::vector<double> v;
   if (!read_numbers(text, 4, v) || v.size() != 4 || !(v[2] > 0) || !(v[3] > 0)) return std::nullopt;

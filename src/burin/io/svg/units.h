@@ -36,6 +36,10 @@ enum class Axis { x, y, both };
 std::optional<double> length_in_user_units(Length length, double px_per_inch, const Viewport& viewport,
                                            Axis axis);
 
+/// transform-origin: one or two lengths or left, center, right, top, bottom, relative to the viewport (a
+/// length in z is left alone). Nothing when it cannot be read.
+std::optional<geom::Point2> parse_origin(std::string_view text, double px_per_inch, const Viewport& viewport);
+
 struct ViewBox {
   double x = 0, y = 0, width = 0, height = 0;
 };

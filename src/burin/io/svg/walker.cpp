@@ -22,9 +22,6 @@ constexpr std::size_t kBytesPerUnit = 64;
 constexpr int kMaxWarnings = 100;
 
 constexpr std::string_view kContainers[] = {"g", "a"};
-/// Drawn by browsers, but nothing to cut.
-constexpr std::string_view kNoCurves[] = {"text",  "image",  "foreignObject", "flowRoot", "video",
-                                          "audio", "canvas", "iframe",        "object",   "embed"};
 /// Never drawn where they stand.
 constexpr std::string_view kDefinitions[] = {"defs",           "symbol",
                                              "clipPath",       "mask",
@@ -128,7 +125,16 @@ Result<Walker::Context> Walker::enter(int index, const Context& outer) {
   if (style->transform && !context.hidden) {
     auto map = parse_transform(*style->transform);
     if (!map) return located(std::move(map).error(), element);
-    context.map = outer.map * *map;
+    Affine2 local = *map;
+    if (style->transform_origin) {
+      const auto origin = parse_origin(*style->transform_origin, page_.px_per_inch, outer.viewport);
+      if (!origin) {
+        return Error{ErrorCode::unsupported, "transform-origin (two lengths or keywords are accepted)",
+                     where(element)};
+      }
+      local = Affine2{1, 0, 0, 1, origin->x, origin->y} * local * Affine2{1, 0, 0, 1, -origin->x, -origin->y};
+    }
+    context.map = outer.map * local;
   }
   return context;
 }
@@ -159,6 +165,7 @@ Result<void> Walker::visit(int index, const Context& outer, const UseSize* use_s
     if (element.name == "g") enter_group(element, context);
     return visit_children(index, context);
   }
+  // text, image, foreignObject and whatever else browsers may draw: nothing to cut.
   ignore(element, context.hidden ? "hidden" : nullptr);
   return {};
 }
@@ -199,19 +206,19 @@ Result<void> Walker::enter_viewport(int index, Context& context, const UseSize* 
     return Error{ErrorCode::syntax, "viewBox (four numbers, width and height above 0, are accepted)",
                  where(element)};
   }
-  // Without a size: all of the outer viewport, or the viewBox as it is where that is not known.
-  const auto size = [&](std::string_view name, Axis axis, double whole, double of_box) -> Result<double> {
-    Element own;  // the size of <use> goes before the own one
-    own.attributes.push_back({Namespace::none, name, element.get(name)});
-    const std::string_view given = use_size == nullptr ? ""
-                                   : axis == Axis::x   ? use_size->width
-                                                       : use_size->height;
-    if (!given.empty() && given != "auto") own.attributes[0].value = given;
-    return frame(context).read(own, name, axis, outer.known ? whole : box ? of_box : 0);
+  // The size of <use> goes before the own one. Without any: all of the outer viewport, or the viewBox as it
+  // is where that is not known.
+  const auto size = [&](std::string_view name, Axis axis, std::string_view given, double whole,
+                        double of_box) {
+    const bool by_use = !given.empty() && given != "auto";
+    return frame(context).read_text(by_use ? given : element.get(name), name, axis,
+                                    outer.known ? whole : of_box);
   };
-  const auto width = size("width", Axis::x, outer.width, box ? box->width : 0);
+  const UseSize none;
+  const UseSize& given = use_size == nullptr ? none : *use_size;
+  const auto width = size("width", Axis::x, given.width, outer.width, box ? box->width : 0);
   if (!width) return located(width.error(), element);
-  const auto height = size("height", Axis::y, outer.height, box ? box->height : 0);
+  const auto height = size("height", Axis::y, given.height, outer.height, box ? box->height : 0);
   if (!height) return located(height.error(), element);
   double corner[2] = {0, 0};
   if (element.name == "svg") {
@@ -238,7 +245,7 @@ Result<void> Walker::enter_viewport(int index, Context& context, const UseSize* 
 
 Result<void> Walker::visit_use(int index, const Context& context) {
   const Element& element = at(index);
-  if (context.hidden || !context.style.visible) return ignore(element, "hidden"), Result<void>();
+  if (context.hidden) return ignore(element, "hidden"), Result<void>();
   const std::string_view href = trim(element.href());
   const int target = href.starts_with('#') ? document_.find(href.substr(1)) : -1;
   if (target < 0) {
