@@ -374,25 +374,40 @@ class Arrangement {
   // --- which chains are boundary
   // -----------------------------------------------------------------------------
 
-  /// Sets `kept`; false when no place of the chain allows a sure decision.
+  /// Sets `kept`; false when no place of the chain allows a sure decision, or when places contradict each
+  /// other (a crossing was missed).
   bool decide(std::uint32_t index) {
     Chain& c = chains_[index];
-    const bool bundled = bundle_of_[index] != kNone;
-    const std::uint32_t longest = longest_sub(c);
-    for (const std::uint32_t s : {longest, c.begin + (c.end - c.begin) / 2, c.begin, c.end - 1}) {
+    const Bundle* bundle = bundle_of_[index] == kNone ? nullptr : &bundles_[bundle_of_[index]];
+    bool decided = false;
+    const std::uint32_t middle = c.begin + (c.end - c.begin) / 2;
+    for (const std::uint32_t s : {longest_sub(c), middle, c.begin, c.end - 1}) {
       Segment half = as_segment(curves_, subs_[s]);
       for (int attempt = 0; attempt < 4; ++attempt) {
         const Point2 p = middle_of(half);
-        const bool first = attempt % 2 == 0;  // next: first quarter, then the middle of what is left of it
-        if (std::optional<bool> kept =
-                sample(subs_[s].segment, p, bundled ? &bundles_[bundle_of_[index]] : nullptr)) {
+        if (const std::optional<bool> kept = sample(subs_[s].segment, p, bundle)) {
           c.kept = *kept;
-          return true;
+          decided = true;
+          break;
         }
-        (first ? half.b : half.a) = p;
+        (attempt % 2 == 0 ? half.b : half.a) = p;  // the first quarter, then the middle of what is left of it
       }
+      if (decided) break;
     }
-    return false;
+    return decided && (bundle || agrees(c));
+  }
+
+  /// Looks again near both ends.
+  bool agrees(const Chain& c) {
+    Segment head = as_segment(curves_, subs_[c.begin]), tail = as_segment(curves_, subs_[c.end - 1]);
+    head.b = middle_of(head);
+    tail.a = middle_of(tail);
+    if (c.from != kNone || c.to != kNone) {  // of a whole loop the two ends are one
+      const std::optional<bool> first = sample(subs_[c.begin].segment, middle_of(head), nullptr);
+      if (first && *first != c.kept) return false;
+    }
+    const std::optional<bool> last = sample(subs_[c.end - 1].segment, middle_of(tail), nullptr);
+    return !last || *last == c.kept;
   }
 
   std::uint32_t longest_sub(const Chain& c) const {
