@@ -17,6 +17,10 @@ endif()
 # -ffp-contract=off: the same bits on machines with and without fused multiply-add (determinism is promised).
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wno-missing-field-initializers
                     -Werror -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # False alarms of GCC 12 on std::string operator+ and on optional/variant in optimised builds (PR 105651, 105562).
+  add_compile_options(-Wno-restrict -Wno-maybe-uninitialized)
+endif()
 if(BURIN_SANITIZE)
   add_compile_options(-fsanitize=${BURIN_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${BURIN_SANITIZE})

@@ -45,6 +45,13 @@ std::string full_name(const CLI::App* app) {
   return name;
 }
 
+/// The innermost command that the arguments name.
+const CLI::App* chosen_command(const CLI::App& root) {
+  const CLI::App* app = &root;
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  return app;
+}
+
 std::vector<std::string> subcommand_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -110,13 +117,14 @@ class Check {
                        app_};
     }
     if (option == app_->get_help_ptr()) help_ = true;
-    if (name == "--version") version_ = true;
+    if (app_->get_parent() == nullptr && name == "--version") version_ = true;
     const bool takes_value = option->get_items_expected_max() > 0;
     if (!takes_value) {
       if (equals != std::string::npos) throw UsageError{name + " takes no value", app_};
       return;
     }
-    if (!given_.insert(option).second) throw UsageError{name + " is given twice (once is enough)", app_};
+    const bool once = option->get_items_expected_max() == 1;
+    if (once && !given_.insert(option).second) throw UsageError{name + " is given twice (once is enough)", app_};
     const bool attached = is_long ? equals != std::string::npos : argument.size() > 2;
     const bool empty = attached && is_long && equals + 1 == argument.size();
     if (empty || (!attached && at_ + 1 >= arguments_.size())) {
@@ -322,14 +330,12 @@ int Cli::run(int argc, const char* const* argv) {
   } catch (const CLI::CallForHelp&) {
     return print_and_check(root_->help());
   } catch (const CLI::ParseError& error) {
-    const auto chosen = root_->get_subcommands();
-    print_error((chosen.empty() ? "burin" : "burin " + chosen.back()->get_name()) + ": " + reworded(error));
+    print_error(full_name(chosen_command(*root_)) + ": " + reworded(error));
     return kWrongUsage;
   }
   if (version_) return print_and_check(std::string("burin ") + BURIN_VERSION + "\n");
 
-  const CLI::App* app = root_.get();
-  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  const CLI::App* app = chosen_command(*root_);
   const auto command = commands_.find(app);
   if (command == commands_.end()) {
     print_error(full_name(app) + ": a command is missing");

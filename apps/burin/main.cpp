@@ -26,6 +26,7 @@ namespace {
 int main(int argc, char** argv) {
   std::set_terminate(give_up);
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is a write error like any other
+  std::signal(SIGXFSZ, SIG_IGN);  // and so is a limit of file size
   try {
     burin::cli::Cli cli;
     burin::cli::add_laser(cli);

@@ -27,9 +27,10 @@ bool same_file(const std::string& a, const std::string& b) {
   if (is_special(a) || is_special(b)) return false;
   std::error_code error;
   if (fs::equivalent(a, b, error) && !error) return true;
-  const fs::path whole_a = fs::weakly_canonical(a, error);
+  // Absolute first: weakly_canonical leaves "a" as it is when there is no such file, but not "./a".
+  const fs::path whole_a = fs::weakly_canonical(fs::absolute(a), error);
   if (error) return a == b;
-  const fs::path whole_b = fs::weakly_canonical(b, error);
+  const fs::path whole_b = fs::weakly_canonical(fs::absolute(b), error);
   return error ? a == b : whole_a == whole_b;
 }
 
@@ -53,25 +54,27 @@ Session::Output* Session::find_output(const std::string& path) {
   return nullptr;
 }
 
-Result<std::string> Session::read_input(const std::string& path) {
+Result<void> Session::protect(const std::string& path) {
   if (find_output(path) != nullptr) {
     return Error{
         ErrorCode::usage, "would be read and overwritten (give the output another name)", {.file = path}};
   }
-  auto bytes = read_file(path);
-  if (bytes.ok()) note_input(path, bytes.value());
-  return bytes;
+  protected_.push_back(path);
+  return {};
 }
 
-void Session::note_input(const std::string& path, std::string_view bytes) {
-  inputs_.push_back({path, sha256_hex(bytes)});
+Result<std::string> Session::read_input(const std::string& path) {
+  if (auto fine = protect(path); !fine) return fine.error();
+  auto bytes = read_file(path);
+  if (bytes.ok()) inputs_.push_back({path, sha256_hex(*bytes)});
+  return bytes;
 }
 
 Result<void> Session::reserve_output(const std::string& path) {
   if (path.empty())
     return Error{ErrorCode::usage, "an output has no name (a file, or - for standard output)", {}};
-  for (const Input& input : inputs_) {
-    if (same_file(input.path, path)) {
+  for (const std::string& input : protected_) {
+    if (same_file(input, path)) {
       return Error{
           ErrorCode::usage, "would be read and overwritten (give the output another name)", {.file = path}};
     }

@@ -50,8 +50,8 @@ class Session {
   /// Reads an input; the first one becomes `input` of the JSON, all are hashed. Error (usage) when it is also
   /// an output.
   Result<std::string> read_input(const std::string& path);
-  /// An input that something else reads (a database): hashed from these bytes.
-  void note_input(const std::string& path, std::string_view bytes);
+  /// A file that something else reads or keeps (a database). Error (usage) when it is also an output.
+  Result<void> protect(const std::string& path);
   /// Says before long work that `path` will be written. Error (usage): the same file twice, or an input.
   Result<void> reserve_output(const std::string& path);
   /// An output, "-" is standard output. Reserves it when that has not been done. Kept until everything has
@@ -68,9 +68,6 @@ class Session {
   /// written in this run is removed again.
   Result<void> finish();
 
-  /// The whole `--json` object as it stands now.
-  Json json() const;
-
  private:
   struct Output {
     std::string path, content;
@@ -79,10 +76,12 @@ class Session {
   struct Input {
     std::string path, sha256;
   };
+  Json json() const;
   Output* find_output(const std::string& path);
 
   std::string operation_;
   std::vector<Input> inputs_;
+  std::vector<std::string> protected_;
   std::vector<Output> outputs_;
   std::string answer_;
   std::unique_ptr<ProgressSink> progress_;

@@ -43,6 +43,9 @@ class Diagnostics {
          std::array{x_mm, y_mm, 0.0}});
   }
 
+  /// Names `file` in all warnings that have an entity or line but no file.
+  void locate(const std::string& file);
+
   const std::vector<Warning>& warnings() const { return warnings_; }
   bool empty() const { return warnings_.empty(); }
   /// True when something was left out (exit code 3).

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The hub: one tool-path type for all operations. Planners write it; posts, servo, verification and pictures
-// read it; nothing here knows a surface or a G-code dialect. mm, mm/min, s, W; axes are unit vectors from the tip to
-// the holder, part frame.
+// read it; nothing here knows a surface or a G-code dialect. mm, mm/min, s, W; axes are unit vectors from the
+// tip to the holder, part frame.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -23,7 +24,8 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-// --- motion: what counts as a move (GOTO), numbered from 0 ---------------------------------------------------
+// --- motion: what counts as a move (GOTO), numbered from 0
+// ---------------------------------------------------
 
 /// To `to` as fast as the machine can; the way between is the machine's.
 struct Rapid {
@@ -35,8 +37,9 @@ struct Feed {
   Pose to;
   bool operator==(const Feed&) const = default;
 };
-/// Tip along a circle about `center`, counter-clockwise seen against `normal` (right-handed), to `to`; `radius` > 0.
-/// A component of the travel along `normal` makes a helix. Less than or exactly one full turn (start == end).
+/// Tip along a circle about `center`, counter-clockwise seen against `normal` (right-handed), to `to`;
+/// `radius` > 0. A component of the travel along `normal` makes a helix. Less than or exactly one full turn
+/// (start == end, seen along `normal`, within kSamePoint_mm).
 struct Arc {
   geom::Point3 center;
   geom::Vec3 normal{0, 0, 1};
@@ -45,7 +48,8 @@ struct Arc {
   bool operator==(const Arc&) const = default;
 };
 
-// --- state ----------------------------------------------------------------------------------------------------
+// --- state
+// ----------------------------------------------------------------------------------------------------
 
 struct FeedRate {
   double mm_min = 0;
@@ -95,29 +99,40 @@ bool is_motion(const Record& record);
 /// The pose a motion record ends in, nullptr for state records.
 const Pose* pose_of(const Record& record);
 
-/// Records in order. `source[i]` says where record i came from: an index the producer defines (contour, line of an
-/// NC program, entity); kNoSource when it has none. Parallel to `records`.
+/// Records in order. `source[i]` says where record i came from: an index the producer defines (contour, line
+/// of an NC program, entity); kNoSource when it has none. Parallel to `records`.
 struct Program {
   static constexpr std::uint32_t kNoSource = 0xffffffffu;
 
   std::string name;  ///< PARTNO
+  /// FROM/: where the tool stands before the first move, when that is known. No move itself.
+  std::optional<Pose> from;
   std::vector<Record> records;
   std::vector<std::uint32_t> source;
 
-  void add(Record record, std::uint32_t from = kNoSource) {
+  void add(Record record, std::uint32_t record_source = kNoSource) {
     records.push_back(std::move(record));
-    source.push_back(from);
+    source.push_back(record_source);
   }
   std::size_t move_count() const;
 };
 
-/// Checks every record: finite numbers, unit axes (1e-6), arcs whose start and end lie at `radius` from the centre
-/// and in a plane normal to `normal` (within `tolerance_mm`), positive feed before the first feed move, dwell >= 0,
-/// text of one line. The error (geometry or range) names the record and, for motion, the move number.
+/// Start and end of an arc this close (seen along its normal) mean a full turn: the default of
+/// Tolerance::point_mm.
+inline constexpr double kSamePoint_mm = 1e-7;
+/// The angle an arc turns that begins at `start`: in (0, 2 pi].
+double arc_sweep(const geom::Point3& start, const Arc& arc);
+/// Length of the tip's way along an arc that begins at `start`, the rise of a helix included, mm.
+double arc_length(const geom::Point3& start, const Arc& arc);
+
+/// Checks every record: finite numbers, unit axes (1e-6), arcs whose start and end lie at `radius` from the
+/// centre and in a plane normal to `normal` (within `tolerance_mm`), positive feed before the first feed
+/// move, dwell >= 0, text of one line. The error (geometry or range) names the record and, for motion, the
+/// move number.
 Result<void> validate(const Program& program, double tolerance_mm = 1e-4);
 
 struct Totals {
-  double feed_mm = 0;   ///< length of feed and arc moves
+  double feed_mm = 0;  ///< length of feed and arc moves
   double rapid_mm = 0;
   double dwell_s = 0;
   std::size_t moves = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Process knowledge of laser cutting (Park & Ahn 2007, section 3): kerf = lambda1 * P / V + lambda2 per laser, material
-// and thickness, with its permissible range, in an SQLite database. mm, W, mm/min, MPa.
+// Process knowledge of laser cutting (Park & Ahn 2007, section 3): kerf = lambda1 * P / V + lambda2 per
+// laser, material and thickness, with its permissible range, in an SQLite database. mm, W, mm/min, MPa.
 #pragma once
 
 #include <memory>
@@ -28,15 +28,16 @@ struct KerfModel {
   double thickness_mm = 0;
   int version = 1;
   double lambda1 = 0, lambda2 = 0;
-  double r = 0;                          ///< correlation coefficient
-  std::string source;                    ///< "Park & Ahn 2007, table 3" or the file it was learned from
+  double r = 0;        ///< correlation coefficient
+  std::string source;  ///< "Park & Ahn 2007, table 3" or the file it was learned from
   int runs_accepted = 0, runs_rejected = 0;
-  /// Standard errors of lambda1 and lambda2, and what a prediction interval needs; absent for literature models.
+  /// Standard errors of lambda1 and lambda2, and what a prediction interval needs; absent for literature
+  /// models.
   struct Statistics {
     double se_lambda1 = 0, se_lambda2 = 0;
-    double residual_sd = 0;              ///< mm
+    double residual_sd = 0;  ///< mm
     int n = 0;
-    double mean_q = 0, sum_sq_q = 0;     ///< of Q = P / V
+    double mean_q = 0, sum_sq_q = 0;  ///< of Q = P / V
     bool operator==(const Statistics&) const = default;
   };
   std::optional<Statistics> statistics;
@@ -47,19 +48,19 @@ struct KerfQuery {
   std::string laser = kDefaultLaser, material = kDefaultMaterial;
   double thickness_mm = 0;
   double power_w = 0, speed_mm_min = 0;
-  std::optional<int> version;            ///< default: the newest
-  bool interpolate = false;              ///< between two known thicknesses
-  bool force = false;                    ///< also outside the permissible range
+  std::optional<int> version;  ///< default: the newest
+  bool interpolate = false;    ///< between two known thicknesses
+  bool force = false;          ///< also outside the permissible range
 };
 
 struct KerfPrediction {
   double kerf_mm = 0;
-  double offset_mm = 0;                  ///< kerf / 2
+  double offset_mm = 0;  ///< kerf / 2
   bool permissible = true;
   bool interpolated = false;
-  KerfModel model;                       ///< the one used; interpolated: blended coefficients
+  KerfModel model;  ///< the one used; interpolated: blended coefficients
   std::optional<std::pair<double, double>> prediction_interval_mm;  ///< 95 %
-  std::string note;                      ///< what the user should know (forced, interpolated); may be empty
+  std::string note;  ///< what the user should know (forced, interpolated); may be empty
 };
 
 /// A setting that cuts cleanly.
@@ -69,7 +70,7 @@ struct KerfSuggestion {
 };
 
 struct RejectedRun {
-  int line = 0;                          ///< of the CSV, from 1
+  int line = 0;  ///< of the CSV, from 1
   std::string reason;
 };
 struct LearnReport {
@@ -81,7 +82,8 @@ class KerfDatabase {
  public:
   /// The built-in table, in memory.
   static Result<KerfDatabase> built_in();
-  /// An existing database file. Errors (data): not a database, damaged, locked, newer schema, missing tables; (io).
+  /// An existing database file. Errors (data): not a database, damaged, locked, newer schema, missing tables;
+  /// (io).
   static Result<KerfDatabase> open(const std::string& path);
   /// Opens or creates (with the built-in table in it) a file for learning.
   static Result<KerfDatabase> open_or_create(const std::string& path);
@@ -95,9 +97,9 @@ class KerfDatabase {
   ~KerfDatabase();
 
   Result<std::vector<KerfModel>> models() const;  ///< all versions, sorted
-  /// Error (range) outside the permissible range: names the nearest permissible setting (smallest change of speed at
-  /// the same power, else of power), unless `force`. Error (range) for an unknown laser, material, thickness, version:
-  /// names what is known.
+  /// Error (range) outside the permissible range: names the nearest permissible setting (smallest change of
+  /// speed at the same power, else of power), unless `force`. Error (range) for an unknown laser, material,
+  /// thickness, version: names what is known.
   Result<KerfPrediction> predict(const KerfQuery& query) const;
   /// Permissible settings, fastest first; `power_w` <= 0: all powers of the model.
   Result<std::vector<KerfSuggestion>> suggest(const KerfQuery& query) const;

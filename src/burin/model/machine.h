@@ -19,19 +19,19 @@ struct Axis {
   char letter = 0;  ///< X Y Z A B C
   AxisKind kind = AxisKind::linear;
   AxisSide side = AxisSide::table;
-  geom::Vec3 direction;        ///< unit; positive angle right-handed about it
-  geom::Point3 point;          ///< on the axis, mm, part frame at zero position
+  geom::Vec3 direction;              ///< unit; positive angle right-handed about it
+  geom::Point3 point;                ///< on the axis, mm, part frame at zero position
   double min = -99999, max = 99999;  ///< mm or degrees
-  double speed = 0;            ///< mm/min or deg/min
-  double acceleration = 0;     ///< mm/s^2 or deg/s^2
+  double speed = 0;                  ///< mm/min or deg/min
+  double acceleration = 0;           ///< mm/s^2 or deg/s^2
 };
 
 struct Machine {
   std::string name;
   std::string description;
-  double pivot_length = 0;     ///< mm
-  std::string dialect;         ///< default dialect, may be empty
-  std::vector<Axis> axes;      ///< from the workpiece outwards
+  double pivot_length = 0;  ///< mm
+  std::string dialect;      ///< default dialect, may be empty
+  std::vector<Axis> axes;   ///< from the workpiece outwards
   const Axis* axis(char letter) const;
 };
 

@@ -1,1 +1,424 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "burin/post/emit.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "burin/base/text.h"
+#include "burin/post/round_arc.h"
+#include "burin/post/words.h"
+
+namespace burin::post {
+namespace {
+
+using geom::Point3;
+using geom::Vec3;
+
+// Arcs of other systems may start and end on radii that differ by what controls take (0.0127 mm).
+constexpr double kArcInput_mm = 0.013;
+// Directions from files with six decimals.
+constexpr double kAxisTolerance = 2e-6;
+constexpr double kMaxCenter_mm = 1e9;
+
+using Grid = std::array<std::int64_t, 3>;
+constexpr std::array<char, 3> kAxis = {'X', 'Y', 'Z'};
+constexpr std::array<char, 3> kCenter = {'I', 'J', 'K'};
+
+double component(const Point3& p, std::size_t axis) {
+  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
+}
+double component(const Vec3& v, std::size_t axis) {
+  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
+}
+
+/// A plane of arcs: the code, and its axes in right-handed order with the normal last.
+struct PlaneCode {
+  int code;
+  std::array<std::size_t, 3> axes;
+};
+constexpr std::array<PlaneCode, 3> kPlanes = {{{17, {0, 1, 2}}, {18, {2, 0, 1}}, {19, {1, 2, 0}}}};
+
+class Emitter {
+ public:
+  Emitter(const cl::Program& program, const Dialect& dialect, const EmitOptions& options,
+          Diagnostics& diagnostics)
+      : program_(program), dialect_(dialect), options_(options), diagnostics_(diagnostics) {}
+
+  Result<NcText> run() {
+    if (options_.program_number < 1 || options_.program_number > 9999)
+      return Error{
+          ErrorCode::usage, "program number " + std::to_string(options_.program_number) + " (1 to 9999)", {}};
+    if (auto ok = cl::validate(program_, kArcInput_mm); !ok) return ok.error();
+    if (program_.from) exact_ = program_.from->tip;
+    if (dialect_.percent) raw_line("%");
+    if (auto ok = frame(dialect_.header); !ok) return ok.error();
+    for (; index_ < program_.records.size(); ++index_) {
+      auto ok = std::visit([this](const auto& record) { return put(record); }, program_.records[index_]);
+      if (!ok) return ok.error();
+    }
+    index_ = NcText::kNoRecord;
+    if (auto ok = frame(dialect_.footer); !ok) return ok.error();
+    if (dialect_.percent) raw_line("%");
+    return std::move(out_);
+  }
+
+ private:
+  // --- lines
+  // --------------------------------------------------------------------------------------------------
+
+  Error error(ErrorCode code, const std::string& what) const {
+    std::string place = "record " + std::to_string(index_);
+    if (index_ < program_.records.size() && cl::is_motion(program_.records[index_]))
+      place += ", move " + std::to_string(move_);
+    return {code, place + ": " + what, {}};
+  }
+
+  void raw_line(const std::string& text) {
+    out_.text += text;
+    out_.text += '\n';
+    out_.line_to_record.push_back(in_frame_ || index_ >= program_.records.size()
+                                      ? NcText::kNoRecord
+                                      : static_cast<std::uint32_t>(index_));
+  }
+
+  Result<void> line(std::string text, bool has_comment = false) {
+    if (dialect_.line_numbers) {
+      // Five digits are the most that every control takes.
+      number_ = number_ + dialect_.line_number_step > 99999 ? dialect_.line_number_step
+                                                            : number_ + dialect_.line_number_step;
+      text.insert(0, "N" + std::to_string(number_) + " ");
+    }
+    if (text.size() > dialect_.line_limit && !has_comment)
+      text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+    if (text.size() > dialect_.line_limit)
+      return error(ErrorCode::range, "a block of " + std::to_string(text.size()) + " characters (at most " +
+                                         std::to_string(dialect_.line_limit) + " for " + dialect_.name + ")");
+    raw_line(text);
+    return {};
+  }
+
+  /// Header and footer. Without a name the empty comment around {name} goes.
+  Result<void> frame(const std::vector<std::string>& lines) {
+    in_frame_ = true;
+    std::string number = std::to_string(options_.program_number);
+    number.insert(0, 4 - number.size(), '0');
+    for (std::string text : lines) {
+      text = fill(std::move(text), "program_number", number);
+      const bool named = text.find("{name}") != std::string::npos;
+      const std::size_t room = dialect_.line_limit - std::min(dialect_.line_limit, text.size() + 8);
+      const std::string name =
+          options_.comments ? comment_text(program_.name, dialect_, std::min(dialect_.comment_limit, room))
+                            : "";
+      if (named && name.empty()) {
+        const std::string empty = dialect_.comment_open + "{name}" + dialect_.comment_close;
+        if (const auto at = text.find(empty); at != std::string::npos) text.erase(at, empty.size());
+      }
+      text = std::string(trim(fill(std::move(text), "name", name)));
+      if (text.empty()) continue;
+      if (text[0] == 'O' || text[0] == '%') {
+        raw_line(text);  // a program number stands without N
+      } else if (auto ok = line(text, named); !ok) {
+        return ok;
+      }
+    }
+    in_frame_ = false;
+    return {};
+  }
+
+  std::string g(int code) const {
+    return (dialect_.two_digit_codes && code < 10 ? "G0" : "G") + std::to_string(code);
+  }
+
+  // --- state
+  // --------------------------------------------------------------------------------------------------
+
+  Result<void> put(const cl::FeedRate& feed) {
+    const std::string text = number_text(feed.mm_min, dialect_.feed_decimals, dialect_.require_point);
+    if (parse_double(text).value_or(0) <= 0)
+      return error(ErrorCode::range,
+                   "a feed of " + format_shortest(feed.mm_min) + " mm/min rounds to 0 (more)");
+    feed_ = text;
+    return {};
+  }
+
+  Result<void> put(const cl::Spindle& spindle) {
+    if (spindle_ == spindle) return {};
+    spindle_ = spindle;
+    const std::string rpm = number_text(spindle.rpm, dialect_.power_decimals, false);
+    switch (spindle.rotation) {
+      case cl::Rotation::clockwise:
+        return word_line(fill(dialect_.spindle_cw, "rpm", rpm), "the spindle");
+      case cl::Rotation::counter_clockwise:
+        return word_line(fill(dialect_.spindle_ccw, "rpm", rpm), "the spindle");
+      case cl::Rotation::off:
+        break;
+    }
+    return word_line(dialect_.spindle_off, "the spindle");
+  }
+
+  Result<void> put(const cl::Beam& beam) {
+    if (beam_ && beam_->on == beam.on && (!beam.on || beam_->power_w == beam.power_w)) return {};
+    const bool change = beam_ && beam_->on && beam.on;
+    beam_ = beam;
+    const std::string power =
+        number_text(beam.power_w * dialect_.power_scale, dialect_.power_decimals, false);
+    if (change && dialect_.power_inline) return line("S" + power);
+    return word_line(beam.on ? fill(dialect_.beam_on, "power", power) : dialect_.beam_off, "a beam");
+  }
+
+  /// A line from the dialect, which may have no words for it.
+  Result<void> word_line(const std::string& text, const std::string& what) {
+    if (text.empty())
+      return error(ErrorCode::unsupported, "the dialect " + dialect_.name + " has no word for " + what +
+                                               " (a dialect file that has)");
+    return line(text);
+  }
+
+  Result<void> put(const cl::Dwell& dwell) {
+    constexpr int kSecondDecimals = 3;
+    std::string text =
+        fill(dialect_.dwell, "seconds", number_text(dwell.seconds, kSecondDecimals, dialect_.require_point));
+    text = fill(std::move(text), "milliseconds", number_text(dwell.seconds * 1000, 0, false));
+    return word_line(text, "a dwell");
+  }
+
+  Result<void> put(const cl::ToolChange& tool) {
+    if (tool.number == 0) return {};  // only the cutter's dimensions are known: nothing to load
+    if (!dialect_.tool_change_supported) {
+      once("tool_change", "the tool change to " + std::to_string(tool.number) +
+                              " is left out: " + dialect_.name + " has none");
+      return {};
+    }
+    const std::string number = std::to_string(tool.number);
+    length_ = options_.write_z ? fill(dialect_.tool_length, "number", number) : "";
+    return word_line(fill(dialect_.tool_change, "number", number), "a tool change");
+  }
+
+  Result<void> put(const cl::Coolant& coolant) {
+    if (coolant_ && coolant_->on == coolant.on) return {};
+    coolant_ = coolant;
+    return word_line(coolant.on ? dialect_.coolant_on : dialect_.coolant_off, "coolant");
+  }
+
+  Result<void> put(const cl::Comment& comment) {
+    if (!options_.comments) return {};
+    const std::size_t frame_size = dialect_.comment_open.size() + dialect_.comment_close.size() + 8;
+    const std::size_t room = dialect_.line_limit - std::min(dialect_.line_limit, frame_size);
+    const std::string text = comment_text(comment.text, dialect_, std::min(dialect_.comment_limit, room));
+    if (text.empty()) return {};
+    return line(dialect_.comment_open + text + dialect_.comment_close, true);
+  }
+
+  Result<void> put(const cl::Unknown& unknown) {
+    if (unknown.text == "STOP") return word_line(dialect_.stop, "a stop");
+    if (unknown.text == "OPSTOP") return word_line(dialect_.optional_stop, "an optional stop");
+    const std::string word =
+        unknown.text.substr(0, std::min(unknown.text.find_first_of("/ ,"), std::size_t{40}));
+    once("unknown_statement", "'" + word + "' is not known and not in the NC text");
+    return {};
+  }
+
+  void once(const std::string& code, const std::string& message) {
+    if (said_.insert(message).second)
+      diagnostics_.left_out(code, error(ErrorCode::internal, message).message);
+  }
+
+  // --- motion
+  // -------------------------------------------------------------------------------------------------
+
+  /// On the grid, within what the control takes.
+  Result<Grid> rounded(const Point3& p) const {
+    Grid grid{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double value = component(p, i);
+      if (!(std::abs(value) <= dialect_.coordinate_limit_mm))
+        return error(ErrorCode::range, std::string(1, kAxis[i]) + format_shortest(value) + " (within " +
+                                           format_shortest(dialect_.coordinate_limit_mm) + " mm for " +
+                                           dialect_.name + ")");
+      grid[i] = to_grid(value, dialect_.decimals);
+    }
+    return grid;
+  }
+
+  Result<void> check(const cl::Pose& pose) {
+    if (norm(pose.axis - Vec3{0, 0, 1}) > kAxisTolerance)
+      return error(ErrorCode::unsupported,
+                   "a tilted tool axis (0, 0, 1: other axes need a machine that turns)");
+    if (options_.write_z) return {};
+    if (!level_) level_ = exact_ ? exact_->z : pose.tip.z;
+    if (std::abs(pose.tip.z - *level_) > from_grid(1, dialect_.decimals) / 2)
+      return error(ErrorCode::unsupported, "Z changes from " + format_fixed(*level_, 6) + " to " +
+                                               format_fixed(pose.tip.z, 6) +
+                                               " in a program without Z words (one height)");
+    return {};
+  }
+
+  std::string coordinate(char letter, std::int64_t steps) const {
+    return std::string(" ") + letter + grid_text(steps, dialect_.decimals, dialect_.require_point);
+  }
+
+  /// One motion block. `forced`: axes written even when they do not change; `center`: the words of an arc.
+  Result<void> block(int code, const Grid& to, std::array<bool, 3> forced, const std::string& center) {
+    std::string text;
+    bool any = false;
+    for (std::size_t i = 0; i < (options_.write_z ? 3u : 2u); ++i) {
+      if (known_[i] && at_[i] == to[i] && !forced[i] && !(i == 2 && !length_.empty())) continue;
+      text += coordinate(kAxis[i], to[i]);
+      any = true;
+      known_[i] = true;
+    }
+    at_ = to;
+    if (!any) {
+      ++out_.vanished;
+      return {};
+    }
+    text += center;
+    if (code != 0 && feed_ != written_feed_) text += " F" + (written_feed_ = feed_);
+    if (code != motion_code_) text.insert(0, " " + g(motion_code_ = code));
+    if (!length_.empty()) text.insert(0, " " + std::exchange(length_, ""));
+    ++out_.moves;
+    return line(text.substr(1));
+  }
+
+  Result<void> straight(int code, const cl::Pose& pose) {
+    if (auto ok = check(pose); !ok) return ok;
+    const auto to = rounded(pose.tip);
+    if (!to) return to.error();
+    exact_ = pose.tip;
+    auto ok = block(code, *to, {}, "");
+    ++move_;
+    return ok;
+  }
+  Result<void> put(const cl::Rapid& rapid) { return straight(0, rapid.to); }
+  Result<void> put(const cl::Feed& feed) { return straight(1, feed.to); }
+
+  /// The plane whose normal the arc has, up to its sense.
+  Result<PlaneCode> plane_of(const cl::Arc& arc) const {
+    for (const PlaneCode& plane : kPlanes) {
+      const double along = component(arc.normal, plane.axes[2]);
+      const Vec3 unit{plane.axes[2] == 0 ? 1.0 : 0.0, plane.axes[2] == 1 ? 1.0 : 0.0,
+                      plane.axes[2] == 2 ? 1.0 : 0.0};
+      // A normal off by this much lifts the far side of the circle by half a step.
+      const double allowed = std::max(1e-9, from_grid(1, dialect_.decimals) / (4 * arc.radius));
+      if (norm(arc.normal - along * unit) > std::min(allowed, kAxisTolerance)) continue;
+      if (plane.code != 17 && !options_.write_z) break;
+      return plane;
+    }
+    return error(ErrorCode::unsupported,
+                 "an arc about the axis " + format_fixed(arc.normal.x, 6) + ", " +
+                     format_fixed(arc.normal.y, 6) + ", " + format_fixed(arc.normal.z, 6) +
+                     (options_.write_z ? " (X, Y or Z)" : " (Z, in a program without Z words)"));
+  }
+
+  Result<void> put(const cl::Arc& arc) {
+    if (auto ok = check(arc.to); !ok) return ok;
+    const auto plane = plane_of(arc);
+    if (!plane) return plane.error();
+    if (std::max({std::abs(arc.center.x), std::abs(arc.center.y), std::abs(arc.center.z)}) > kMaxCenter_mm)
+      return error(ErrorCode::range,
+                   "an arc centre beyond " + format_shortest(kMaxCenter_mm) + " mm (nearer)");
+    const auto start = rounded(*exact_), end = rounded(arc.to.tip);
+    if (!start) return start.error();
+    if (!end) return end.error();
+    const Point3 from = *exact_;
+    at_ = *start;
+    exact_ = arc.to.tip;
+    auto ok = pieces(arc, *plane, from, *end);
+    ++move_;
+    return ok;
+  }
+
+  Result<void> pieces(const cl::Arc& arc, const PlaneCode& plane, const Point3& from, const Grid& end) {
+    const auto [a, b, c] = plane.axes;
+    const PlaneArc flat{.center = {component(arc.center, a), component(arc.center, b)},
+                        .start = {component(from, a), component(from, b)},
+                        .end = {component(arc.to.tip, a), component(arc.to.tip, b)},
+                        .clockwise = component(arc.normal, c) < 0,
+                        .sweep = cl::arc_sweep(from, arc)};
+    const double c_from = component(from, c), c_to = component(arc.to.tip, c);
+    const ArcGrid grid{.decimals = dialect_.decimals,
+                       .absolute_mm = dialect_.arc_absolute_mm,
+                       .relative = dialect_.arc_relative,
+                       .min_radius_mm = dialect_.arc_min_radius_mm,
+                       .max_radius_mm = std::min(dialect_.arc_max_radius_mm, dialect_.coordinate_limit_mm),
+                       .min_sweep = geom::radians(dialect_.min_arc_sweep_deg),
+                       .lines_only = at_[c] != end[c] && !dialect_.arc_helix};
+    const auto rounded_pieces = round_arc(flat, {at_[a], at_[b]}, grid);
+    if (!rounded_pieces)
+      return error(ErrorCode::range, "an arc of radius " + format_shortest(arc.radius) +
+                                         " mm needs more than a million lines (a smaller radius)");
+    std::size_t arcs = 0;
+    for (const ArcPiece& piece : *rounded_pieces) {
+      Grid to{};
+      to[a] = piece.end.a;
+      to[b] = piece.end.b;
+      to[c] = piece.at >= 1 ? end[c] : to_grid(c_from + piece.at * (c_to - c_from), dialect_.decimals);
+      if (auto ok = reachable(to); !ok) return ok;
+      if (auto ok = piece.line ? block(1, to, {}, "") : arc_block(flat.clockwise, plane, piece, to); !ok)
+        return ok;
+      arcs += piece.line ? 0 : 1;
+    }
+    out_.arcs_split += arcs > 1 ? 1 : 0;
+    out_.arcs_as_lines += arcs < rounded_pieces->size() ? 1 : 0;
+    return {};
+  }
+
+  Result<void> reachable(const Grid& to) const {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (const double value = from_grid(to[i], dialect_.decimals);
+          !(std::abs(value) <= dialect_.coordinate_limit_mm + 1))
+        return error(ErrorCode::range, std::string("the arc leaves the range of ") + kAxis[i] + " (within " +
+                                           format_shortest(dialect_.coordinate_limit_mm) + " mm for " +
+                                           dialect_.name + ")");
+    return {};
+  }
+
+  /// Both words of the plane and both of the centre are always written: controls differ in what they take for
+  /// granted.
+  Result<void> arc_block(bool clockwise, const PlaneCode& plane, const ArcPiece& piece, const Grid& to) {
+    if (plane.code != plane_code_) {
+      if (auto ok = line(g(plane_code_ = plane.code)); !ok) return ok;
+    }
+    std::array<std::int64_t, 3> offset{};
+    offset[plane.axes[0]] = piece.offset.a;
+    offset[plane.axes[1]] = piece.offset.b;
+    std::array<bool, 3> forced{};
+    forced[plane.axes[0]] = forced[plane.axes[1]] = true;
+    std::string center;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (forced[i]) center += coordinate(kCenter[i], offset[i]);
+    return block(clockwise ? 2 : 3, to, forced, center);
+  }
+
+  const cl::Program& program_;
+  const Dialect& dialect_;
+  const EmitOptions& options_;
+  Diagnostics& diagnostics_;
+  NcText out_;
+  std::size_t index_ = 0, move_ = 0;
+  bool in_frame_ = false;
+  int number_ = 0;
+  std::set<std::string> said_;
+  // What the control knows.
+  Grid at_{};
+  std::array<bool, 3> known_{};
+  std::optional<Point3> exact_;  // where the last motion record ended
+  std::optional<double> level_;  // the one Z of a program without Z words
+  int motion_code_ = -1, plane_code_ = 17;
+  std::string feed_, written_feed_, length_;
+  std::optional<cl::Beam> beam_;
+  std::optional<cl::Spindle> spindle_;
+  std::optional<cl::Coolant> coolant_;
+};
+
+}  // namespace
+
+Result<NcText> emit(const cl::Program& program, const Dialect& dialect, const EmitOptions& options,
+                    Diagnostics& diagnostics) {
+  return Emitter(program, dialect, options, diagnostics).run();
+}
+
+}  // namespace burin::post

@@ -14,8 +14,8 @@
 namespace burin::post {
 
 struct EmitOptions {
-  bool write_z = false;          ///< false: plane work, Z words left out (laser); records must then keep one Z
-  int program_number = 1;        ///< O number where the dialect has one
+  bool write_z = false;    ///< false: plane work, Z words left out (laser); records must then keep one Z
+  int program_number = 1;  ///< O number where the dialect has one
   bool comments = true;
 };
 
@@ -25,13 +25,16 @@ struct NcText {
   static constexpr std::uint32_t kNoRecord = 0xffffffffu;
   std::vector<std::uint32_t> line_to_record;
   std::size_t moves = 0;
+  std::size_t vanished = 0;       ///< moves shorter than a decimal, left out
+  std::size_t arcs_split = 0;     ///< arcs that went out as several arcs
+  std::size_t arcs_as_lines = 0;  ///< arcs that went out as one line or more
 };
 
-/// Every coordinate is rounded once; I and J are computed from the rounded ends so that start and end radius agree
-/// within the dialect's tolerance; an arc for which no representable centre does that is split or goes out as
-/// lines. Moves that vanish after rounding are left out; full circles are kept. Modal words are not repeated.
-/// Errors (unsupported, range): a tilted axis (needs a machine), an arc in a plane the dialect has no word for,
-/// Z changes with write_z false, invalid programs.
+/// Every coordinate is rounded once; I and J are computed from the rounded ends so that start and end radius
+/// agree within the dialect's tolerance; an arc for which no representable centre does that is split or goes
+/// out as lines. Moves that vanish after rounding are left out; full circles are kept. Modal words are not
+/// repeated. Errors (unsupported, range): a tilted axis (needs a machine), an arc in a plane the dialect has
+/// no word for, Z changes with write_z false, invalid programs.
 Result<NcText> emit(const cl::Program& program, const Dialect& dialect, const EmitOptions& options,
                     Diagnostics& diagnostics);
 

@@ -9,7 +9,8 @@
 
 namespace burin::io {
 
-/// Whole file content in. Errors: syntax (not XML, damaged path data; with line and column or element id), range.
+/// Whole file content in. Errors: syntax (not XML, damaged path data; with line and column or element id),
+/// range.
 Result<Drawing> read_svg(std::string_view bytes, const ReadOptions& options, Diagnostics& diagnostics);
 
 }  // namespace burin::io

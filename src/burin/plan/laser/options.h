@@ -21,7 +21,8 @@ enum class Corners {
 };
 enum class LeadKind { arc, line, none };
 enum class Order { inner_first, file };
-/// climb: the waste lies to the right of the travel for every contour (outer clockwise); conventional: to the left.
+/// climb (and automatic): the part lies to the right of the travel, the waste to the left (outer contours clockwise,
+/// holes counter-clockwise); conventional: the other way round.
 enum class Direction { automatic, climb, conventional };
 
 struct LeadOptions {
@@ -38,7 +39,7 @@ struct CornerOptions {
 };
 struct MicroJointOptions {
   int per_contour = 0;
-  double width_mm = 0.3;
+  double width_mm = 0.3;    ///< of the material that stays: the beam is off for this and the kerf
 };
 struct CopyOptions {
   int columns = 1, rows = 1;

@@ -1,1 +1,376 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "burin/plan/laser/profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "burin/base/text.h"
+#include "burin/geom/box_tree.h"
+#include "burin/geom/curve/offset.h"
+#include "burin/plan/laser/crossings.h"
+#include "burin/plan/laser/nesting.h"
+#include "burin/plan/laser/outlines.h"
+
+namespace burin::laser {
+namespace {
+
+using geom::ArcSpline;
+using geom::Point2;
+using geom::Segment;
+
+/// What offset_region guarantees; taken off the tolerance of the fit so that the sum stays within it.
+constexpr double kOffsetGuarantee = 1e-6;
+
+std::string mm(double v) {
+  return format_fixed(v, 4) + " mm";
+}
+std::string at(Point2 p) {
+  return "(" + format_fixed(p.x, 3) + ", " + format_fixed(p.y, 3) + ")";
+}
+
+class ProfileMaker {
+ public:
+  ProfileMaker(const std::vector<Contour>& contours, const io::Drawing& drawing, const LaserOptions& options,
+               Diagnostics& diagnostics)
+      : contours_(contours), drawing_(drawing), options_(options), diagnostics_(diagnostics) {}
+
+  Result<Profile> run() {
+    if (auto ok = make_outlines(); !ok) return ok.error();
+    leave_out_crossing();
+    nest();
+    if (offset_mm() != 0) {
+      if (auto ok = refit_for_offset(); !ok) return ok.error();
+    }
+    orient();
+    if (auto ok = make_paths(); !ok) return ok.error();
+    if (profile_.paths.empty()) {
+      return Error{ErrorCode::geometry, "nothing left to cut (at least one closed or open contour)", {}};
+    }
+    figures();
+    return std::move(profile_);
+  }
+
+ private:
+  double offset_mm() const { return options_.side == Side::on ? 0.0 : options_.offset_mm; }
+  double fit_tolerance() const {
+    // Without arcs the chords of the tool path need their half of the tolerance.
+    const double share = options_.arcs ? 1.0 : 0.5;
+    const double whole = share * options_.tolerance.path_mm;
+    return offset_mm() != 0 && whole > 10 * kOffsetGuarantee ? whole - kOffsetGuarantee : whole;
+  }
+
+  Where where(const Contour& contour) const {
+    Where w;
+    const std::uint32_t e = contour.entity.empty() ? 0 : contour.entity.front();
+    if (e < drawing_.entities.size())
+      w.entity = drawing_.entities[e].name(), w.line = drawing_.entities[e].line;
+    return w;
+  }
+  Where where(std::uint32_t contour) const { return where(contours_[contour]); }
+
+  Result<void> make_outlines() {
+    for (std::uint32_t i = 0; i < contours_.size(); ++i) {
+      const Contour& c = contours_[i];
+      if (c.treatment == Treatment::ignore || c.curves.empty()) continue;
+      auto spline = detail::outline_of(c, drawing_, 0.0, fit_tolerance(), options_, profile_.pieces);
+      if (!spline) return spline.error();
+      if (spline->segments.empty()) continue;
+      if (spline->closed && spline->segments.size() < 2) {
+        diagnostics_.left_out_at("degenerate_contour", "a closed contour of a single line",
+                                 spline->segments[0].a.x, spline->segments[0].a.y, where(i));
+        continue;
+      }
+      const Role role = c.treatment == Treatment::engrave ? Role::engrave
+                        : c.closed                        ? Role::outer
+                                                          : Role::open;
+      profile_.outlines.push_back({std::move(*spline), role, 0, i});
+    }
+    return {};
+  }
+
+  void leave_out_crossing() {
+    std::vector<ArcSpline> closed(profile_.outlines.size());
+    for (std::size_t i = 0; i < closed.size(); ++i) {
+      if (profile_.outlines[i].role == Role::outer) closed[i] = profile_.outlines[i].spline;
+    }
+    const double tolerance = options_.tolerance.path_mm;
+    std::set<std::uint32_t> out;
+    for (const detail::CrossingReport& c :
+         detail::find_crossings(closed, tolerance, options_.tolerance.point_mm)) {
+      const Where w = where(profile_.outlines[c.first].contour);
+      const bool self = c.first == c.second;
+      const std::string what = self ? "the contour crosses itself at " + at(c.position)
+                                    : "the contour crosses another one (" +
+                                          where(profile_.outlines[c.second].contour).entity + ") at " +
+                                          at(c.position);
+      if (!c.deep) {
+        diagnostics_.info_at("crossing_repaired",
+                             what + ", less deep than the tolerance of " + mm(tolerance) + "; repaired",
+                             c.position.x, c.position.y, w);
+        continue;
+      }
+      if (options_.side == Side::on) {
+        diagnostics_.info_at(self ? "self_crossing" : "contours_cross", what + "; cut on the line as drawn",
+                             c.position.x, c.position.y, w);
+        continue;
+      }
+      diagnostics_.left_out_at(self ? "self_crossing" : "contours_cross",
+                               what + ", deeper than the tolerance of " + mm(tolerance) + "; " +
+                                   (self ? "it is left out" : "both are left out"),
+                               c.position.x, c.position.y, w);
+      out.insert(c.first);
+      out.insert(c.second);
+    }
+    std::vector<Outline> kept;
+    for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
+      if (out.count(i) == 0) kept.push_back(std::move(profile_.outlines[i]));
+    }
+    profile_.outlines = std::move(kept);
+  }
+
+  void nest() {
+    std::vector<CutPath> as_paths;
+    as_paths.reserve(profile_.outlines.size());
+    for (const Outline& o : profile_.outlines) as_paths.push_back({o.spline, o.role, 0, o.contour});
+    const std::vector<std::uint32_t> parents = detail::path_parents(as_paths, options_.tolerance.point_mm);
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+      Outline& o = profile_.outlines[i];
+      for (std::uint32_t p = parents[i]; p != detail::kNoParent; p = parents[p]) ++o.depth;
+      if (o.role == Role::outer && o.depth % 2 == 1) o.role = Role::hole;
+    }
+  }
+
+  bool is_closed_cut(const Outline& o) const { return o.role == Role::outer || o.role == Role::hole; }
+
+  /// Whether the path runs outside the closed contour, by role or by the user's word.
+  bool runs_outside(const Outline& o) const {
+    if (options_.side == Side::outside) return true;
+    if (options_.side == Side::inside) return false;
+    return o.role == Role::outer;
+  }
+
+  /// Free curves are fitted again, now that the side is known on which the offset must be within the
+  /// tolerance.
+  Result<void> refit_for_offset() {
+    std::vector<Piece> pieces;
+    for (Outline& o : profile_.outlines) {
+      const Contour& c = contours_[o.contour];
+      if (is_closed_cut(o) && detail::has_free_curves(c)) {
+        const bool drawn_ccw = signed_area(o.spline) > 0;
+        // To the right of the drawn direction lies the outside of a counter-clockwise contour.
+        const double right = drawn_ccw == runs_outside(o) ? offset_mm() : -offset_mm();
+        auto spline = detail::outline_of(c, drawing_, right, fit_tolerance(), options_, pieces);
+        if (!spline) return spline.error();
+        o.spline = std::move(*spline);
+        continue;
+      }
+      const auto shift = static_cast<std::uint32_t>(pieces.size());
+      std::map<std::uint32_t, std::uint32_t> renumbered;
+      for (Segment& s : o.spline.segments) {
+        const auto [it, fresh] =
+            renumbered.try_emplace(s.source, shift + static_cast<std::uint32_t>(renumbered.size()));
+        if (fresh) pieces.push_back(profile_.pieces[s.source]);
+        s.source = it->second;
+      }
+    }
+    profile_.pieces = std::move(pieces);
+    return {};
+  }
+
+  void orient() {
+    for (Outline& o : profile_.outlines) {
+      if (!is_closed_cut(o)) continue;
+      if ((signed_area(o.spline) > 0) != (o.role == Role::outer)) o.spline = reversed(o.spline);
+    }
+  }
+
+  Result<void> make_paths() {
+    if (offset_mm() == 0) {
+      for (const Outline& o : profile_.outlines)
+        profile_.paths.push_back({o.spline, o.role, o.depth, o.contour});
+      return {};
+    }
+    if (options_.side == Side::automatic) {
+      std::vector<std::uint32_t> all;
+      for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
+        if (is_closed_cut(profile_.outlines[i])) all.push_back(i);
+      }
+      if (auto ok = offset_group(all); !ok) return ok.error();
+    } else {
+      for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
+        if (!is_closed_cut(profile_.outlines[i])) continue;
+        if (auto ok = offset_group({i}); !ok) return ok.error();
+      }
+    }
+    for (const Outline& o : profile_.outlines) {
+      if (!is_closed_cut(o)) profile_.paths.push_back({o.spline, o.role, o.depth, o.contour});
+    }
+    // In the order of the drawing, which is what `--order file` promises.
+    std::stable_sort(profile_.paths.begin(), profile_.paths.end(),
+                     [](const CutPath& a, const CutPath& b) { return a.contour < b.contour; });
+    return {};
+  }
+
+  /// Offsets the outlines `group` together: as one region by nesting, or a single one to the side asked for.
+  Result<void> offset_group(const std::vector<std::uint32_t>& group) {
+    if (group.empty()) return {};
+    const bool by_nesting = options_.side == Side::automatic;
+    double d = offset_mm();
+    std::vector<ArcSpline> region;
+    for (const std::uint32_t i : group) {
+      const Outline& o = profile_.outlines[i];
+      region.push_back(by_nesting || o.role == Role::outer ? o.spline : reversed(o.spline));
+      if (!by_nesting && !runs_outside(o)) d = -d;
+    }
+    auto result = geom::offset_region(region, d, {options_.tolerance.point_mm});
+    if (!result) {
+      Error error = result.error();
+      if (error.where.entity.empty() && group.size() == 1)
+        error.where = where(profile_.outlines[group[0]].contour);
+      return error;
+    }
+    std::set<std::uint32_t> seen;
+    for (std::size_t k = 0; k < result->contours.size(); ++k) {
+      const Outline& from = profile_.outlines[group[result->from[k]]];
+      ArcSpline& spline = result->contours[k];
+      report_merged(spline, group);
+      for (const Segment& s : spline.segments) seen.insert(s.source);
+      // The waste side follows from the result itself: a merged path can turn a part's edge into a hole.
+      const bool outer = signed_area(spline) > 0;
+      const Role role = by_nesting           ? (outer ? Role::outer : Role::hole)
+                        : runs_outside(from) ? Role::outer
+                                             : Role::hole;
+      if (!by_nesting && !runs_outside(from)) spline = reversed(spline);
+      profile_.paths.push_back({std::move(spline), role, from.depth, from.contour});
+    }
+    const std::set<std::uint32_t> vanished(result->vanished.begin(), result->vanished.end());
+    for (const std::uint32_t v : vanished) report_vanished(profile_.outlines[group[v]]);
+    report_removed_loops(group, vanished, seen);
+    return {};
+  }
+
+  void report_vanished(const Outline& o) {
+    const Point2 p = o.spline.segments.front().a;
+    diagnostics_.left_out_at(
+        "contour_vanished",
+        "the contour is too small for an offset of " + mm(offset_mm()) + " and is not cut", p.x, p.y,
+        where(o.contour));
+  }
+
+  void report_merged(const ArcSpline& path, const std::vector<std::uint32_t>& group) {
+    if (group.size() < 2) return;
+    if (piece_contour_.empty()) {
+      piece_contour_.resize(profile_.pieces.size(), 0);
+      for (const Outline& o : profile_.outlines) {
+        for (const Segment& s : o.spline.segments) piece_contour_[s.source] = o.contour;
+      }
+    }
+    std::set<std::uint32_t> contours;
+    Point2 p;
+    for (const Segment& s : path.segments) {
+      if (s.source == geom::kCornerSource) continue;
+      if (contours.insert(piece_contour_[s.source]).second) p = s.a;
+    }
+    if (contours.size() < 2) return;
+    std::string names;
+    for (const std::uint32_t c : contours) {
+      if (names.size() > 120) {
+        names += ", ...";
+        break;
+      }
+      names += (names.empty() ? "" : ", ") + where(c).entity;
+    }
+    diagnostics_.left_out_at(
+        "contours_merged",
+        std::to_string(contours.size()) +
+            " contours are closer than twice the offset and are cut as one: what lies between is lost (" +
+            names + ")",
+        p.x, p.y, where(*contours.begin()));
+  }
+
+  /// Stretches of an outline that have no path beside them although the contour is cut: notches and fillets
+  /// narrower than the beam. How much is left uncut there is what the user wants to know.
+  void report_removed_loops(const std::vector<std::uint32_t>& group, const std::set<std::uint32_t>& vanished,
+                            const std::set<std::uint32_t>& seen) {
+    std::vector<Segment> beam;
+    std::vector<geom::Box2> boxes;
+    for (const CutPath& path : profile_.paths) {
+      for (const Segment& s : path.spline.segments) {
+        beam.push_back(s);
+        boxes.push_back(bounds_of(s));
+      }
+    }
+    const geom::BoxTree2 tree(std::move(boxes));
+    const auto clearance = [&](Point2 p) {
+      double best = 1e300;
+      for (double reach = 2 * std::abs(offset_mm()); best > reach && reach < 1e7; reach *= 4) {
+        tree.query(geom::Box2{p, p}.grown(reach), [&](std::uint32_t k) {
+          best = std::min(best, nearest_on(beam[k], p).distance);
+          return true;
+        });
+      }
+      return best - std::abs(offset_mm());
+    };
+    for (std::uint32_t g = 0; g < group.size(); ++g) {
+      if (vanished.count(g) != 0) continue;
+      const Outline& o = profile_.outlines[group[g]];
+      int count = 0;
+      double worst = 0;
+      Point2 position;
+      for (const Segment& s : o.spline.segments) {
+        if (seen.count(s.source) != 0) continue;
+        const Point2 p = point_on(s, 0.5);
+        const double excess = clearance(p);
+        if (excess <= options_.tolerance.path_mm) continue;
+        ++count;
+        if (excess > worst) worst = excess, position = p;
+      }
+      if (count == 0) continue;
+      diagnostics_.left_out_at("loop_removed",
+                               "the beam does not fit into " + std::to_string(count) +
+                                   " narrow stretches of the contour; up to " + mm(worst) +
+                                   " of material stays",
+                               position.x, position.y, where(o.contour));
+    }
+  }
+
+  void figures() {
+    std::set<std::uint32_t> used;
+    for (const CutPath& path : profile_.paths) {
+      for (const Segment& s : path.spline.segments) {
+        if (s.source == geom::kCornerSource) continue;
+        const Piece& piece = profile_.pieces[s.source];
+        profile_.max_deviation_mm = std::max(profile_.max_deviation_mm, piece.deviation_mm);
+        if (piece.fitted) ++profile_.fitted_segments;
+      }
+    }
+    if (offset_mm() != 0) profile_.max_deviation_mm += kOffsetGuarantee;
+    // Arcs keep their centres when offset, so a smooth joint of the outline is a smooth joint of the path.
+    for (const Outline& o : profile_.outlines) {
+      const auto& segments = o.spline.segments;
+      for (std::size_t i = 0; i + 1 < segments.size(); ++i) {
+        if (segments[i].source != segments[i + 1].source) continue;
+        const ArcSpline pair{{segments[i], segments[i + 1]}, false};
+        profile_.g1_breaks += count_g1_breaks(pair, options_.tolerance.tangent_rad);
+      }
+    }
+  }
+
+  const std::vector<Contour>& contours_;
+  const io::Drawing& drawing_;
+  const LaserOptions& options_;
+  Diagnostics& diagnostics_;
+  Profile profile_;
+  std::vector<std::uint32_t> piece_contour_;
+};
+
+}  // namespace
+
+Result<Profile> make_profile(const std::vector<Contour>& contours, const io::Drawing& drawing,
+                             const LaserOptions& options, Diagnostics& diagnostics) {
+  return ProfileMaker(contours, drawing, options, diagnostics).run();
+}
+
+}  // namespace burin::laser
