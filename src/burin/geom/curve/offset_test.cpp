@@ -11,6 +11,7 @@
 #include <string>
 
 #include "burin/geom/curve/offset_cases.h"
+#include "burin/geom/curve/segment_meet.h"
 
 namespace burin::geom {
 namespace {
@@ -138,6 +139,51 @@ TEST(Offset, FilletOfTheOffsetsRadiusClosesToACorner) {
     const double fillet = d < 1 ? (1 - d) * (1 - d) * (1 - kPi / 4) : 0;
     EXPECT_NEAR(area(offset(ell, d).contours), area(offset(sharp, d).contours) + fillet, 1e-6) << d;
   }
+}
+
+TEST(Offset, TangentFilletsSmallerThanTheOffsetAtAnyAngle) {
+  // The joints are smooth up to rounding of either sign, and the arc collapses to its centre.
+  const Region ell{polygon({{0, 0}, {20, 0}, {20, 5}, {6, 5}, {5, 6}, {5, 20}, {0, 20}},
+                           {0, 0, 0, -std::tan(kPi / 8), 0, 0, 0})};
+  const double want =
+      area(offset({polygon({{0, 0}, {20, 0}, {20, 5}, {5, 5}, {5, 20}, {0, 20}})}, 2).contours);
+  cases::Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    const Region turned{moved(ell[0], cases::uniform(random, 0, 6.28), {cases::uniform(random, -99, 99), 7})};
+    EXPECT_NEAR(area(offset(turned, 2).contours), want, 1e-6) << i;
+  }
+}
+
+TEST(Offset, SpurOfNoWidth) {
+  const Region region{polygon({{0, 0}, {10, 0}, {10, 10}, {5, 10}, {5, 15}, {5, 10}, {0, 10}})};
+  EXPECT_NEAR(area(offset(region, 0).contours), 100, 1e-6);
+  // Beside the grown square: a strip of width 2 from y = 11 to 15 and half a disk.
+  EXPECT_NEAR(area(offset(region, 1).contours), 140 + kPi + 8 + kPi / 2, 1e-6);
+}
+
+TEST(SegmentMeet, LargeAndSmallCircleMeetPrecisely) {
+  const Segment flat =
+      make_arc({-9.662113661473299, -1.5463101501852043}, {-1.6400491566011495, -0.78769354170350026},
+               {-6104.137198344205, 64487.862720340905}, true);
+  const double big = distance(flat.a, flat.center);
+  int met = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Point2 c{22.0 - i * 0.4, -15.8};
+    const Segment small = make_arc({c.x, c.y + 28}, {c.x, c.y - 28}, c, true);
+    const detail::Meeting m = detail::meet(flat, small, 1e-9);
+    if (const auto* one = std::get_if<detail::OneMeet>(&m)) {
+      ++met;
+      EXPECT_NEAR(distance(one->p, c), 28, 1e-9);
+      EXPECT_NEAR(distance(one->p, flat.center), big, 1e-9);
+    }
+  }
+  EXPECT_GT(met, 5);
+}
+
+TEST(SegmentMeet, HalvesOfACircleDoNotMeetBesidesTheirEnds) {
+  const ArcSpline c = circle({1, 2}, 3, true);
+  EXPECT_TRUE(
+      std::holds_alternative<detail::NoMeet>(detail::meet_neighbours(c.segments[0], c.segments[1], 1e-9)));
 }
 
 TEST(Offset, NoOffsetGivesTheRegion) {
