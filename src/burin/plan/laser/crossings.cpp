@@ -27,7 +27,10 @@ using geom::Vec2;
 struct Place {
   std::uint32_t segment = 0;
   double fraction = 0;
-  auto operator<=>(const Place&) const = default;
+  bool operator==(const Place&) const = default;
+  bool operator<(const Place& o) const {
+    return segment != o.segment ? segment < o.segment : fraction < o.fraction;
+  }
 };
 
 struct Meeting {

@@ -33,7 +33,8 @@ JointPlan plan_joints(double length, int count, double gap_mm, const std::vector
     const double middle = (k + 0.5) * pitch;
     bool found = false;
     for (int step = 0; step <= 2 * kSteps && !found; ++step) {
-      const double shift = (step % 2 == 0 ? 1 : -1) * ((step + 1) / 2) * (pitch - gap_mm) / (2 * kSteps);
+      const int away = (step + 1) / 2;  // 0, 1, 1, 2, 2, ... to either side in turn
+      const double shift = (step % 2 == 0 ? away : -away) * (pitch - gap_mm) / (2 * kSteps);
       const Span gap{middle + shift - gap_mm / 2, middle + shift + gap_mm / 2};
       if (gap.from < margin_mm || gap.to > length - margin_mm || !is_clear(gap, zones)) continue;
       plan.gaps.push_back(gap);
