@@ -92,5 +92,16 @@ TEST(Diagnostics, OnlyLeftOutChangesTheExitCode) {
   EXPECT_EQ(d.count("open_chain"), 1u);
 }
 
+TEST(Diagnostics, LocateNamesTheFileWhereAPlaceIsKnown) {
+  Diagnostics d;
+  d.info("a", "with entity", {.entity = "LINE 2F"});
+  d.info("b", "with file", {.file = "other.dxf", .line = 3});
+  d.info("c", "of the job");
+  d.locate("part.dxf");
+  EXPECT_EQ(d.warnings()[0].where.file, "part.dxf");
+  EXPECT_EQ(d.warnings()[1].where.file, "other.dxf");
+  EXPECT_EQ(d.warnings()[2].where.file, "");
+}
+
 }  // namespace
 }  // namespace burin
