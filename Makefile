@@ -3,7 +3,7 @@
 SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 
-.PHONY: help setup build demo test bench fuzz format format-check tidy clean
+.PHONY: help setup configure build demo test bench fuzz format format-check tidy clean
 
 help:            ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -11,15 +11,18 @@ help:            ## this list
 setup:           ## install the Debian packages that are missing (root or sudo)
 	@scripts/setup
 
-build: setup     ## build the program: build/release/apps/burin/burin
-	@cmake --preset release >build-release.log 2>&1 || { cat build-release.log; rm -f build-release.log; exit 1; }
-	@rm -f build-release.log
-	@cmake --build --preset release -j $(JOBS)
+configure: setup
+	@mkdir -p build
+	@cmake --preset release >build/configure.log 2>&1 || { cat build/configure.log; exit 1; }
+
+build: configure ## build the program: build/release/apps/burin/burin
+	@cmake --build --preset release -j $(JOBS) --target burin
 
 demo: build      ## cut three example parts and say where the pictures are
 	@scripts/demo build/release/apps/burin/burin out/demo
 
-test: build      ## all tests
+test: configure  ## all tests
+	@cmake --build --preset release -j $(JOBS)
 	@ctest --preset release -j $(JOBS)
 
 bench: setup     ## measure beside the peers that Debian ships; writes out/bench.json
@@ -38,7 +41,7 @@ format:          ## format the sources in place
 format-check:    ## fail when a source is not formatted
 	@git ls-files '*.h' '*.cpp' | xargs clang-format-14 --dry-run -Werror
 
-tidy: build      ## clang-tidy over the files changed since BASE (default: the last day's commits)
+tidy: configure  ## clang-tidy over the files changed since BASE (default: the last day's commits)
 	@scripts/tidy build/release $(BASE)
 
 clean:           ## remove everything that was built
