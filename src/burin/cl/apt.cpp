@@ -509,7 +509,7 @@ class Writer {
   }
   static std::string one_line(std::string text) {
     for (char& c : text)
-      if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+      if ((static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f) c = ' ';
     return text;
   }
   static std::string length(double value) { return format_fixed(value, kLengthDecimals); }

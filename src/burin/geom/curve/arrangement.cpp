@@ -30,7 +30,8 @@ struct SubEdge {
 /// Sub-edges between two junctions, along which the winding numbers do not change.
 struct Chain {
   std::uint32_t from = kNone, to = kNone;  // junctions; kNone: a whole loop
-  std::uint32_t begin = 0, end = 0;        // sub-edges
+  std::uint32_t begin = 0, end = 0;        // sub-edges; of an untouched loop, raw segments
+  bool untouched = false;                  // a whole loop that nothing meets
   std::uint32_t next = kNone;              // chain that continues the boundary
   bool kept = false;
 };
@@ -157,8 +158,8 @@ class Arrangement {
 
   /// Raw vertices at the ends of cut segments, and where a piece runs into a connector, take part.
   void cluster() {
-    const std::size_t n = curves_.segments.size();
-    vertex_node_.assign(n, kNone);
+    if (cuts_.empty()) return;
+    vertex_node_.assign(curves_.segments.size(), kNone);
     cut_points_ = static_cast<std::uint32_t>(points_.size());
     const auto add_vertex = [&](std::uint32_t i) {
       if (vertex_node_[i] != kNone) return;
@@ -169,7 +170,6 @@ class Arrangement {
       add_vertex(c.segment);
       add_vertex(next_of(c.segment));
     }
-    if (points_.empty()) return;
     // Sorted by x; within a run no wider than eps every pair is compared.
     std::vector<std::uint32_t> order(points_.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
@@ -205,7 +205,7 @@ class Arrangement {
 
   /// Cluster of raw vertex i, or kNone when it stands alone.
   std::uint32_t vertex_cluster(std::uint32_t i) const {
-    const std::uint32_t node = vertex_node_[i];
+    const std::uint32_t node = vertex_node_.empty() ? kNone : vertex_node_[i];
     if (node == kNone) return kNone;
     const std::uint32_t c = cluster_of_[node];
     return junction_[c] ? c : kNone;
@@ -216,11 +216,18 @@ class Arrangement {
 
   void cut_loops() {
     std::size_t cut = 0;
-    subs_.reserve(curves_.segments.size() + cuts_.size());
+    if (!cuts_.empty()) subs_.reserve(curves_.segments.size() + cuts_.size());
     for (std::size_t k = 0; k < curves_.loops(); ++k) {
       const std::uint32_t begin = curves_.first[k], end = curves_.first[k + 1];
       first_chain_ = chains_.size();
       open_ = false;
+      if (begin == end) continue;
+      const bool met = cut < cuts_.size() && cuts_[cut].segment < end;
+      if (!met && std::find(curves_.inside.begin() + begin, curves_.inside.begin() + end, 1) ==
+                      curves_.inside.begin() + end) {
+        chains_.push_back({kNone, kNone, begin, end, true});
+        continue;
+      }
       for (std::uint32_t i = begin; i < end; ++i) {
         if (curves_.inside[i]) {
           while (cut < cuts_.size() && cuts_[cut].segment == i) ++cut;
@@ -374,25 +381,47 @@ class Arrangement {
   // --- which chains are boundary
   // -----------------------------------------------------------------------------
 
-  /// Sets `kept`; false when no place of the chain allows a sure decision.
+  /// Sets `kept`; false when no place of the chain allows a sure decision, or when places contradict each
+  /// other (a crossing was missed).
   bool decide(std::uint32_t index) {
     Chain& c = chains_[index];
-    const bool bundled = bundle_of_[index] != kNone;
-    const std::uint32_t longest = longest_sub(c);
-    for (const std::uint32_t s : {longest, c.begin + (c.end - c.begin) / 2, c.begin, c.end - 1}) {
-      Segment half = as_segment(curves_, subs_[s]);
+    const Bundle* bundle = bundle_of_[index] == kNone ? nullptr : &bundles_[bundle_of_[index]];
+    bool decided = false;
+    const std::uint32_t middle = c.begin + (c.end - c.begin) / 2;
+    for (const std::uint32_t s : {longest_sub(c), middle, c.begin, c.end - 1}) {
+      Segment half = part(c, s);
       for (int attempt = 0; attempt < 4; ++attempt) {
         const Point2 p = middle_of(half);
-        const bool first = attempt % 2 == 0;  // next: first quarter, then the middle of what is left of it
-        if (std::optional<bool> kept =
-                sample(subs_[s].segment, p, bundled ? &bundles_[bundle_of_[index]] : nullptr)) {
+        if (const std::optional<bool> kept = sample(segment_of(c, s), p, bundle)) {
           c.kept = *kept;
-          return true;
+          decided = true;
+          break;
         }
-        (first ? half.b : half.a) = p;
+        (attempt % 2 == 0 ? half.b : half.a) = p;  // the first quarter, then the middle of what is left of it
       }
+      if (decided) break;
     }
-    return false;
+    return decided && (bundle || agrees(c));
+  }
+
+  /// Looks again near both ends.
+  bool agrees(const Chain& c) {
+    Segment head = part(c, c.begin), tail = part(c, c.end - 1);
+    head.b = middle_of(head);
+    tail.a = middle_of(tail);
+    if (c.from != kNone || c.to != kNone) {  // of a whole loop the two ends are one
+      const std::optional<bool> first = sample(segment_of(c, c.begin), middle_of(head), nullptr);
+      if (first && *first != c.kept) return false;
+    }
+    const std::optional<bool> last = sample(segment_of(c, c.end - 1), middle_of(tail), nullptr);
+    return !last || *last == c.kept;
+  }
+
+  Segment part(const Chain& c, std::uint32_t s) const {
+    return c.untouched ? curves_.segments[s] : as_segment(curves_, subs_[s]);
+  }
+  std::uint32_t segment_of(const Chain& c, std::uint32_t s) const {
+    return c.untouched ? s : subs_[s].segment;
   }
 
   std::uint32_t longest_sub(const Chain& c) const {
@@ -401,7 +430,8 @@ class Arrangement {
     std::uint32_t best = c.begin;
     double length = -1;
     for (std::uint32_t s = c.begin; s < std::min(c.end, c.begin + kLook); ++s) {
-      const double l = distance2(subs_[s].a, subs_[s].b);
+      const Segment g = part(c, s);
+      const double l = distance2(g.a, g.b);
       if (l > length) best = s, length = l;
     }
     return best;
@@ -532,20 +562,36 @@ class Arrangement {
   Boundary collect() {
     Boundary out;
     out.used.assign(options_.contours, 0);
+    loop_subs_.reserve(subs_.size());
     std::vector<std::uint8_t> done(chains_.size(), 0);
     for (std::uint32_t i = 0; i < chains_.size(); ++i) {
       if (dropped_[i] || !chains_[i].kept || done[i]) continue;
+      if (chains_[i].untouched) {
+        collect_untouched(out, chains_[i]);
+        continue;
+      }
       loop_subs_.clear();
       for (std::uint32_t c = i; !done[c]; c = chains_[c].next) {
         done[c] = 1;
         for (std::uint32_t s = chains_[c].begin; s < chains_[c].end; ++s) append(subs_[s]);
       }
-      finish_loop(out, chains_[i].next == i && chains_[i].from == kNone);
+      finish_loop(out);
     }
     std::stable_sort(out.loops.begin(), out.loops.end(),
                      [](const BoundaryLoop& a, const BoundaryLoop& b) { return a.contour < b.contour; });
     out.degenerate_places = degenerate_;
     return out;
+  }
+
+  void collect_untouched(Boundary& out, const Chain& c) {
+    BoundaryLoop loop;
+    loop.segments.assign(curves_.segments.begin() + c.begin, curves_.segments.begin() + c.end);
+    loop.contour = curves_.contour[tree_.loop_of(c.begin)];
+    // Long loops are not measured: they could be thin only by being so everywhere.
+    constexpr std::size_t kMeasured = 64;
+    if (loop.segments.size() < 2 || (loop.segments.size() <= kMeasured && thin(loop.segments))) return;
+    out.used[loop.contour] = 1;
+    out.loops.push_back(std::move(loop));
   }
 
   /// Neighbouring parts of one raw segment become one again.
@@ -563,7 +609,7 @@ class Arrangement {
     return std::abs(distance(s.a, s.center) - r) <= slack && std::abs(distance(s.b, s.center) - r) <= slack;
   }
 
-  void finish_loop(Boundary& out, bool whole) {
+  void finish_loop(Boundary& out) {
     if (loop_subs_.size() > 1 && loop_subs_.front().segment == loop_subs_.back().segment &&
         !(loop_subs_.front().a == loop_subs_.front().b)) {
       // The seam fell inside a raw segment (not when the loop holds two separate parts of it).
@@ -585,15 +631,14 @@ class Arrangement {
       if (first == kNone) first = e.segment;
       loop.segments.push_back(s);
     }
-    if (loop.segments.size() < 2 || thin(loop.segments, whole)) return;
+    if (loop.segments.size() < 2 || thin(loop.segments)) return;
     for (const SubEdge& e : loop_subs_) out.used[curves_.contour[tree_.loop_of(e.segment)]] = 1;
     loop.contour = curves_.contour[tree_.loop_of(first)];
     out.loops.push_back(std::move(loop));
   }
 
-  /// Whether a loop is thinner than a point. Whole raw loops of many segments are not measured.
-  bool thin(const std::vector<Segment>& segments, bool whole) const {
-    if (whole && segments.size() > 64) return false;
+  /// Whether a loop is thinner than a point.
+  bool thin(const std::vector<Segment>& segments) const {
     double area = 0, length = 0;
     const Point2 o = segments.front().a;
     for (const Segment& s : segments) {

@@ -288,7 +288,17 @@ Path part(const Path& path, double tau0, double tau1) {
   result.magnitude = path.magnitude;
   for (double k = std::floor(tau0); k < tau1; ++k) {
     const double t0 = std::max(0.0, tau0 - k), t1 = std::min(1.0, tau1 - k);
-    if (t0 < t1) result.pieces.push_back(part(path.pieces[static_cast<std::size_t>(k)], t0, t1));
+    if (!(t0 < t1)) continue;
+    Bezier piece = part(path.pieces[static_cast<std::size_t>(k)], t0, t1);
+    // Cut at a cusp: the derivative is zero there up to the accuracy of the parameter, and its direction is
+    // noise.
+    constexpr double kCusp = 1e-7;
+    double largest = 0;
+    for (int i = 0; i <= piece.hodograph_degree; ++i) {
+      largest = std::max(largest, norm(piece.d[static_cast<std::size_t>(i)]));
+    }
+    if (t0 > 0 || t1 < 1) deflate(piece, kCusp * largest);
+    result.pieces.push_back(piece);
   }
   return result;
 }

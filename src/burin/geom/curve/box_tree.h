@@ -54,7 +54,7 @@ class BoxTree {
     for (std::size_t i = lo; i < hi; ++i) {
       self(level - 1, i, visit);
       for (std::size_t j = i + 1; j < hi; ++j) {
-        if (levels_[level - 1][i].overlaps(levels_[level - 1][j])) pair(level - 1, i, j, visit);
+        if (meets(levels_[level - 1][i], levels_[level - 1][j])) pair(level - 1, i, j, visit);
       }
     }
   }
@@ -64,16 +64,26 @@ class BoxTree {
       visit(a, b);
       return;
     }
-    const std::vector<Box2>& below = levels_[level - 1];
-    const Box2& box_b = levels_[level][b];
-    const std::size_t a_hi = std::min((a + 1) * kFan, below.size());
-    const std::size_t b_hi = std::min((b + 1) * kFan, below.size());
-    for (std::size_t i = a * kFan; i < a_hi; ++i) {
-      if (!below[i].overlaps(box_b)) continue;
-      for (std::size_t j = b * kFan; j < b_hi; ++j) {
-        if (below[i].overlaps(below[j])) pair(level - 1, i, j, visit);
+    const Box2 *below = levels_[level - 1].data(), box_a = levels_[level][a], box_b = levels_[level][b];
+    const std::size_t size = levels_[level - 1].size();
+    // Only children that reach the other node.
+    std::size_t in_b[kFan], count = 0;
+    for (std::size_t j = b * kFan, end = std::min(j + kFan, size); j < end; ++j) {
+      in_b[count] = j;
+      count += meets(below[j], box_a) ? 1 : 0;
+    }
+    for (std::size_t i = a * kFan, end = std::min(i + kFan, size); i < end; ++i) {
+      if (!meets(below[i], box_b)) continue;
+      for (std::size_t k = 0; k < count; ++k) {
+        if (meets(below[i], below[in_b[k]])) pair(level - 1, i, in_b[k], visit);
       }
     }
+  }
+
+  /// Box2::overlaps without branches, which could not be predicted here.
+  static bool meets(const Box2& a, const Box2& b) {
+    return bool(int(a.lo.x <= b.hi.x) & int(b.lo.x <= a.hi.x) & int(a.lo.y <= b.hi.y) &
+                int(b.lo.y <= a.hi.y));
   }
 
   struct Ray {

@@ -53,6 +53,9 @@ std::optional<FittedPiece> fit_single(const Target& target, double tangent_rad) 
       (deviation(m0) <= deviation(m1) ? x1 : x0) = deviation(m0) <= deviation(m1) ? m1 : m0;
     }
     best = 0.5 * (x0 + x1);
+    // What an exact arc has, to the last digit.
+    const double mean = std::clamp(0.5 * (at_start + at_end), lo, hi);
+    if (deviation(mean) <= deviation(best)) best = mean;
   }
   if (deviation(best) > target.tolerance) return std::nullopt;
   FittedPiece piece{{{arc_over(a.point, b.point, best), 0, path.end()}}, {}};

@@ -240,14 +240,17 @@ inline Region near_vertices(Random& random) {
   return {polygon(v, bulge)};
 }
 
-/// Wavy ring of about n segments, every third an arc, outer boundary and hole.
-inline Region wavy_ring(int n, double radius) {
+/// Wavy ring of about n segments 0.6 mm long, three of ten arcs, outer boundary and hole. 40 long waves, and
+/// a ripple of the size of the segments, so that half of the vertices are concave whatever n is.
+inline Region wavy_ring(int n) {
+  const double radius = n / 20.0;
   const auto loop = [](int m, double r, double wave, bool ccw) {
     std::vector<Point2> v;
     std::vector<double> bulge;
+    const double ripple = 0.4 * 2 * kPi * r / m;
     for (int i = 0; i < m; ++i) {
       const double a = (ccw ? 2 : -2) * kPi * i / m;
-      const double rr = r + wave * std::sin(40 * a) + 0.25 * wave * std::sin(m / 7 * a);
+      const double rr = r + wave * std::sin(40 * a) + ripple * std::sin(m / 7 * a);
       v.push_back({rr * std::cos(a), rr * std::sin(a)});
       bulge.push_back(i % 10 < 3 ? (ccw ? 0.02 : -0.02) : 0.0);
     }

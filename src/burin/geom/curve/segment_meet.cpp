@@ -53,23 +53,18 @@ Candidates circles_meet(const Segment& s, const Segment& t, double eps) {
   return {{foot + half * left(e), foot - half * left(e)}, 2};
 }
 
-/// All of t further than eps to one side of the line s (t a line).
-bool beside(const Segment& s, const Segment& t, double eps2) {
+/// Bound of the height of an arc above its chord: for up to half a turn h = (c^2 / 4) / (r + sqrt(r^2 - c^2 /
+/// 4)).
+double height_bound(const Segment& s) {
+  return s.is_line() ? 0.0 : distance2(s.a, s.b) / (4 * std::abs(s.radius));
+}
+
+/// All of t on one side of s's chord, further away than both heights and eps together.
+bool beside(const Segment& s, const Segment& t, double reach) {
   const Vec2 u = s.b - s.a;
   const double side_a = cross(u, t.a - s.a), side_b = cross(u, t.b - s.a);
   const double nearer = std::min(std::abs(side_a), std::abs(side_b));
-  return side_a * side_b > 0 && nearer * nearer > eps2 * norm2(u);
-}
-
-/// All of t further than eps outside or inside the full circle of s.
-bool off_circle(const Segment& s, const Segment& t, double eps) {
-  const double r = std::abs(s.radius), inner = r - eps;
-  if (inner <= 0) return false;
-  // A line is inside when its ends are.
-  if (t.is_line()) {
-    return distance2(t.a, s.center) < inner * inner && distance2(t.b, s.center) < inner * inner;
-  }
-  return false;
+  return side_a * side_b > 0 && nearer * nearer > reach * reach * norm2(u);
 }
 
 class Collector {
@@ -126,11 +121,8 @@ bool near_segment(const Segment& s, Point2 p, double eps) {
 }
 
 Meeting meet(const Segment& s, const Segment& t, double eps) {
-  if (s.is_line() && t.is_line()) {
-    if (beside(s, t, eps * eps) || beside(t, s, eps * eps)) return NoMeet{};
-  } else if ((t.is_line() && off_circle(s, t, eps)) || (s.is_line() && off_circle(t, s, eps))) {
-    return NoMeet{};
-  }
+  const double reach = height_bound(s) + height_bound(t) + eps;
+  if (beside(s, t, reach) || beside(t, s, reach)) return NoMeet{};
   Collector found(eps);
   const Candidates c = carriers_meet(s, t, eps);
   for (int i = 0; i < c.count; ++i) {

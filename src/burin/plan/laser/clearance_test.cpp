@@ -45,31 +45,6 @@ TEST(SegmentDistance, AgreesWithDenseSampling) {
   }
 }
 
-TEST(BoxTree, FindsWhatATestOfEveryBoxFinds) {
-  Random random{std::mt19937(6)};
-  for (const int n : {0, 1, 4, 5, 100, 1000}) {
-    std::vector<geom::Box2> boxes;
-    for (int i = 0; i < n; ++i) {
-      geom::Box2 b;
-      b.add(random.point(100));
-      if (i % 2) b.add(b.lo + Vec2{random.real(0, 20), random.real(0, 20)});
-      boxes.push_back(b);
-    }
-    const BoxTree tree(boxes);
-    for (int q = 0; q < 50; ++q) {
-      geom::Box2 area;
-      area.add(random.point(100));
-      area.add(random.point(100));
-      std::set<std::uint32_t> want, got;
-      for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-        if (boxes[i].overlaps(area)) want.insert(i);
-      }
-      EXPECT_TRUE(tree.query(area, [&](std::uint32_t i) { return got.insert(i).second; }));
-      EXPECT_EQ(got, want);
-    }
-  }
-}
-
 TEST(Clearance, SeesEveryCopy) {
   Builder b;
   b.plate({0, 0}, {10, 10});

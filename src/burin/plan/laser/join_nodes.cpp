@@ -16,7 +16,9 @@ using geom::Point2;
 constexpr double kShortLoop = 4.0;
 // How many runs such a check follows, how many places it looks at; beyond, ends are not joined.
 constexpr int kMostSteps = 64;
-constexpr int kMostPlaces = 256;
+constexpr int kMostPlaces = 64;
+// Points that make one node; more within a join length of each other are no drawing.
+constexpr std::size_t kMostMembers = 64;
 
 class Clusterer {
  public:
@@ -161,6 +163,7 @@ class Clusterer {
 
   /// All spots of a group within join of p.
   bool fits(std::uint32_t p, std::uint32_t q_group) const {
+    if (members_[q_group].size() >= kMostMembers) return false;
     if (members_[q_group].empty()) return geom::distance(places_[p], places_[q_group]) <= scale_.join;
     return std::all_of(members_[q_group].begin(), members_[q_group].end(), [&](std::uint32_t spot) {
       return geom::distance(places_[p], places_[spot]) <= scale_.join;

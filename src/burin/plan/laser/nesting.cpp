@@ -103,7 +103,7 @@ class Container {
 
  private:
   std::vector<Rise> rises_;
-  BoxTree tree_;
+  geom::BoxTree2 tree_;
 };
 
 /// Three points of a path, so that one that touches another path does not decide alone.
@@ -131,7 +131,7 @@ std::vector<std::uint32_t> path_parents(const std::vector<CutPath>& paths, doubl
   const auto smaller = [&](std::uint32_t a, std::uint32_t b) {
     return area[a] != area[b] ? area[a] < area[b] : a < b;
   };
-  const BoxTree tree(closed_box);
+  const geom::BoxTree2 tree(closed_box);
   std::vector<std::optional<Container>> containers(n);
   std::vector<std::uint32_t> parents(n, kNoParent);
   std::vector<std::uint32_t> candidates;

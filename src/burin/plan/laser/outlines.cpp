@@ -2,6 +2,7 @@
 #include "burin/plan/laser/outlines.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace burin::laser::detail {
 namespace {
@@ -41,6 +42,16 @@ void weld(std::vector<Segment>& run, Point2 from, Point2 to, double most) {
   run.back() = with_ends(run.back(), run.back().a, to);
 }
 
+/// How far the fit of curve i may leave the drawn direction at its start: nothing at smooth joints, see
+/// corner_freedom().
+double start_freedom(const Contour& contour, std::size_t i, double tangent_rad) {
+  const std::size_t n = contour.curves.size();
+  if (i == 0 && !contour.closed) return 0;
+  const geom::Vec2 in = tangent_at(contour.curves[(i + n - 1) % n], 1.0);
+  const geom::Vec2 out = tangent_at(contour.curves[i], 0.0);
+  return geom::corner_freedom(std::abs(std::atan2(cross(in, out), dot(in, out))), tangent_rad);
+}
+
 bool is_free(const geom::Curve2& curve) {
   return std::holds_alternative<geom::Nurbs2>(curve) || std::holds_alternative<geom::EllipseArc2>(curve);
 }
@@ -61,8 +72,19 @@ Result<geom::ArcSpline> outline_of(const Contour& contour, const io::Drawing& dr
                                    std::vector<Piece>& pieces) {
   geom::ArcSpline out;
   out.closed = contour.closed;
-  const geom::FitOptions fit{options.fit, tolerance_mm, offset_mm, options.tolerance.tangent_rad};
-  for (std::size_t i = 0; i < contour.curves.size(); ++i) {
+  const std::size_t n = contour.curves.size();
+  const double tangent_rad = options.tolerance.tangent_rad;
+  for (std::size_t i = 0; i < n; ++i) {
+    geom::FitOptions fit;
+    fit.method = options.fit;
+    fit.tolerance_mm = tolerance_mm;
+    fit.offset_mm = offset_mm;
+    fit.tangent_rad = tangent_rad;
+    if (is_free(contour.curves[i])) {
+      fit.start_freedom_rad = start_freedom(contour, i, tangent_rad);
+      fit.end_freedom_rad =
+          i + 1 < n || contour.closed ? start_freedom(contour, (i + 1) % n, tangent_rad) : 0;
+    }
     auto fitted = geom::fit_arc_spline(contour.curves[i], fit);
     if (!fitted) return at_entity(fitted.error(), drawing, contour.entity[i]);
     std::vector<Segment> run = std::move(fitted->segments);

@@ -20,7 +20,7 @@ using geom::Vec2;
 // Of the curves that lie on one, so many are looked at; more on one place is hostile, and is reported.
 constexpr int kMostPartners = 64;
 // Boxes looked at for one line before the search is given up (and reported).
-constexpr int kMostBoxes = 20000;
+constexpr int kMostBoxes = 4096;
 
 struct LineView {
   std::uint32_t piece;

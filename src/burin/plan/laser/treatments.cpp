@@ -100,7 +100,9 @@ Result<std::vector<Treatment>> treatments(const io::Drawing& drawing,
   const Names names = names_of(drawing);
   std::map<std::uint32_t, Treatment> colors;
   std::map<std::string, Treatment> keys;
-  for (const auto& [key, treatment] : layers) {
+  for (const auto& item : layers) {
+    const std::string& key = item.first;
+    const Treatment treatment = item.second;
     const bool is_layer = std::any_of(names.layers.begin(), names.layers.end(), [&](const std::string& name) {
       return to_lower(name) == to_lower(key);
     });
