@@ -99,4 +99,39 @@ inline geom::Curve2 smooth_ring(const std::vector<geom::Point2>& p) {
   return curve ? geom::Curve2{*curve} : geom::Curve2{geom::Line2{p[0], p[1]}};
 }
 
+/// A part with holes near each other and near the edge, some too small, of lines and arcs; or of splines.
+inline Sketch random_part(std::uint64_t seed, bool free_curves) {
+  Dice dice(seed);
+  Sketch s;
+  const auto ring = [&](geom::Point2 c, double r0, double r1) {
+    const auto p = star(dice, c, r0, r1, 6 + dice.below(6));
+    if (free_curves) {
+      s.add({smooth_ring(p)}, true);
+    } else {
+      s.add(bulged(dice, p), true);
+    }
+  };
+  ring({0, 0}, 50, 60);
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const geom::Point2 c{i * 20 + dice.in(-2, 2), j * 20 + dice.in(-2, 2)};
+      switch (dice.below(4)) {
+        case 0:
+          s.circle(c, dice.in(0.2, 8));
+          break;
+        case 1:
+          ring(c, 4, 8);
+          ring(c, 1, 2);
+          break;
+        case 2:
+          ring(c, 2, 8.5);
+          break;
+        default:
+          break;
+      }
+    }
+  }
+  return s;
+}
+
 }  // namespace burin::laser::fixture

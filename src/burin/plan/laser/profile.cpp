@@ -290,6 +290,45 @@ class ProfileMaker {
         p.x, p.y, where(*contours.begin()));
   }
 
+  /// Segments of the outline that no path runs beside, although one should. Of drawn lines and arcs those
+  /// that left nothing in the result; of free curves also a part, unless it ends in a corner of the outline:
+  /// what a round beam leaves in inner corners is no news.
+  template <class Clearance>
+  std::vector<std::uint32_t> lost_segments(const ArcSpline& outline, const std::set<std::uint32_t>& seen,
+                                           const Clearance& clearance) const {
+    const auto& segments = outline.segments;
+    const std::size_t n = segments.size();
+    const auto suspect = [&](std::size_t k) {
+      return seen.count(segments[k].source) == 0 || profile_.pieces[segments[k].source].fitted;
+    };
+    std::vector<bool> lost(n);
+    bool any = false;
+    for (std::size_t k = 0; k < n; ++k) {
+      lost[k] = suspect(k) && clearance(point_on(segments[k], 0.5)) > options_.tolerance.path_mm;
+      any = any || lost[k];
+    }
+    if (!any) return {};
+    const auto corner_before = [&](std::size_t k) {
+      return geom::count_g1_breaks({{segments[(k + n - 1) % n], segments[k]}, false},
+                                   options_.tolerance.tangent_rad) > 0;
+    };
+    const auto forgive = [&](std::size_t k) {
+      const bool forgiven = lost[k] && seen.count(segments[k].source) != 0;
+      if (forgiven) lost[k] = false;
+      return forgiven;
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!corner_before(k)) continue;
+      for (std::size_t i = 0; i < n && (i == 0 || !corner_before((k + i) % n)) && forgive((k + i) % n);) ++i;
+      for (std::size_t i = 1; i <= n && forgive((k + n - i) % n) && !corner_before((k + n - i) % n);) ++i;
+    }
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (lost[k]) out.push_back(k);
+    }
+    return out;
+  }
+
   /// Stretches of an outline that have no path beside them although the contour is cut: notches and fillets
   /// narrower than the beam. How much is left uncut there is what the user wants to know.
   void report_removed_loops(const std::vector<std::uint32_t>& group, const std::set<std::uint32_t>& vanished,
@@ -319,11 +358,9 @@ class ProfileMaker {
       int count = 0;
       double worst = 0;
       Point2 position;
-      for (const Segment& s : o.spline.segments) {
-        if (seen.count(s.source) != 0) continue;
-        const Point2 p = point_on(s, 0.5);
+      for (const std::uint32_t k : lost_segments(o.spline, seen, clearance)) {
+        const Point2 p = point_on(o.spline.segments[k], 0.5);
         const double excess = clearance(p);
-        if (excess <= options_.tolerance.path_mm) continue;
         ++count;
         if (excess > worst) worst = excess, position = p;
       }
