@@ -196,8 +196,8 @@ int checked_integer(const std::string& option, const std::string& text, int min,
 
 /// An option that hands its text to `take`, which throws CLI::ValidationError.
 CLI::Option* add_checked(CLI::App& app, const std::string& name, const std::string& placeholder,
-                         const std::string& description, std::function<void(const std::string&)> take) {
-  return app.add_option_function<std::string>(name, std::move(take), description)->type_name(placeholder);
+                         const std::string& description, const std::function<void(const std::string&)>& take) {
+  return app.add_option_function<std::string>(name, take, description)->type_name(placeholder);
 }
 
 }  // namespace

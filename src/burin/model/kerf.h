@@ -22,6 +22,15 @@ struct PermissibleRange {
   double speed_min = 0, speed_max = 0;  ///< mm/min
 };
 
+/// How sure a fitted model is: standard errors of lambda1 and lambda2, and what a prediction interval needs.
+struct KerfStatistics {
+  double se_lambda1 = 0, se_lambda2 = 0;
+  double residual_sd = 0;  ///< mm
+  int n = 0;
+  double mean_q = 0, sum_sq_q = 0;  ///< of Q = P / V
+  bool operator==(const KerfStatistics&) const = default;
+};
+
 /// One fitted model: kerf [mm] = lambda1 * P [W] / V [mm/min] + lambda2.
 struct KerfModel {
   std::string laser, material;
@@ -31,16 +40,7 @@ struct KerfModel {
   double r = 0;        ///< correlation coefficient
   std::string source;  ///< "Park & Ahn 2007, table 3" or the file it was learned from
   int runs_accepted = 0, runs_rejected = 0;
-  /// Standard errors of lambda1 and lambda2, and what a prediction interval needs; absent for literature
-  /// models.
-  struct Statistics {
-    double se_lambda1 = 0, se_lambda2 = 0;
-    double residual_sd = 0;  ///< mm
-    int n = 0;
-    double mean_q = 0, sum_sq_q = 0;  ///< of Q = P / V
-    bool operator==(const Statistics&) const = default;
-  };
-  std::optional<Statistics> statistics;
+  std::optional<KerfStatistics> statistics;   ///< absent for literature models
   std::vector<PermissibleRange> permissible;  ///< sorted by power
 };
 

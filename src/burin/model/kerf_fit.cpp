@@ -91,7 +91,7 @@ void fit_line(const std::vector<const KerfRun*>& runs, KerfModel& model) {
     const double miss = run->kerf_mm() - (s.mean_k + model.lambda1 * (run->heat() - s.mean_q));
     squares += miss * miss;
   }
-  KerfModel::Statistics& t = model.statistics.emplace();
+  KerfStatistics& t = model.statistics.emplace();
   t.n = static_cast<int>(runs.size());
   t.residual_sd = std::sqrt(squares / (n - 2));
   t.mean_q = s.mean_q;

@@ -330,7 +330,7 @@ Result<std::vector<KerfModel>> load_models(const Connection& connection, const s
     m.runs_rejected = to_int(in.integer());
     const std::string sum = in.text();
     if (!in.next_is_null()) {
-      KerfModel::Statistics& s = m.statistics.emplace();
+      KerfStatistics& s = m.statistics.emplace();
       s.n = to_int(in.integer());
       s.se_lambda1 = in.real();
       s.se_lambda2 = in.real();

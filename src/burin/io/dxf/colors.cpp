@@ -30,7 +30,8 @@ std::uint32_t indexed_color(int index) {
   if (index >= 250) return kGreys[static_cast<std::size_t>(index - 250)];
   // 10..249: 24 hues of 15 degrees; in each, 5 values from light to dark, odd ones half saturated.
   constexpr std::array<int, 5> kValues = {255, 165, 127, 76, 38};
-  const double hue = (index / 10 - 1) * 15.0;
+  const int sector = index / 10 - 1;
+  const double hue = sector * 15.0;
   const int value = kValues[static_cast<std::size_t>(index % 10 / 2)];
   const double floor = index % 2 != 0 ? 0.5 : 0.0;
   const auto of = [&](double peak) {

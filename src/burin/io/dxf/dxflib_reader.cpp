@@ -17,9 +17,6 @@
 namespace burin::io::dxf {
 namespace {
 
-using geom::Point3;
-using geom::Vec3;
-
 // Receives what dxflib made of the records. dxflib calls endSection() once for every tag 0 or 9, after it has
 // handed over the record before: their count tells which record a call is about.
 class Collector : public DL_CreationAdapter {

@@ -214,7 +214,7 @@ std::optional<std::uint32_t> from_function(std::string_view name, std::string_vi
     const auto value = scan.number();
     if (!value) return std::nullopt;
     values[count] = *value;
-    if (scan.word() != "" && name[0] != 'h') return std::nullopt;  // an angle may carry "deg"
+    if (!scan.word().empty() && name[0] != 'h') return std::nullopt;  // an angle may carry "deg"
     percent[count] = scan.peek() == '%';
     if (percent[count]) scan.skip();
     ++count;

@@ -116,7 +116,7 @@ std::vector<Declaration> parse_declarations(std::string_view text) {
     const std::string_view one = text.substr(i, end - i);
     i = end + 1;
     const std::size_t colon = one.find(':');
-    if (colon == std::string_view::npos || colon > 256) continue;
+    if (colon > 256) continue;  // none (npos), or longer than any property
     const auto property = property_of(to_lower(trim(one.substr(0, colon))));
     if (!property) continue;
     std::string_view value = trim(one.substr(colon + 1));
