@@ -68,8 +68,9 @@ class Finder {
     std::vector<CrossingReport> reports;
     for (auto& [pair, meetings] : meetings_) {
       for (const bool deep : {true, false}) {
-        // The shallow test looks for anything beyond the size of rounding and of the points' own tolerance.
-        const double reach = deep ? tolerance_ : std::min(tolerance_, 10 * point_);
+        // The shallow test looks for anything that is more than a touch: the offset would follow a small loop
+        // the wrong way round.
+        const double reach = deep ? tolerance_ : std::min(tolerance_, point_);
         const auto where = pair.first == pair.second
                                ? self_crossing(pair.first, meetings, reach)
                                : pair_crossing(pair.first, pair.second, meetings, reach);
