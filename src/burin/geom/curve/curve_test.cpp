@@ -232,6 +232,28 @@ TEST(Nurbs, InterpolationPassesThroughAndIsSmooth) {
   EXPECT_NEAR(tangent_at(*clamped, 1).x, 1, 1e-9);
 }
 
+TEST(Nurbs, InterpolationTakesPointsThatDifferByRoundingForOne) {
+  // A ring that closes with its first point computed again, as 10 sin(2 pi): -2.4e-15.
+  std::vector<Point2> ring;
+  for (int i = 0; i <= 24; ++i)
+    ring.push_back({10 * std::cos(2 * kPi * i / 24), 10 * std::sin(2 * kPi * i / 24)});
+  for (const double shift : {0.0, 1e4}) {
+    std::vector<Point2> moved;
+    for (const Point2 p : ring) moved.push_back({p.x + shift, p.y - shift});
+    moved.insert(moved.begin() + 5, moved[5]);
+    moved[5].x += 1e-12;
+    for (const bool closed : {true, false}) {
+      const auto n = interpolate(moved, closed);
+      ASSERT_TRUE(n.ok()) << n.error().message;
+      for (int i = 0; i <= 300; ++i) {
+        const Point2 p = point_at(*n, i / 300.0);
+        EXPECT_NEAR(std::hypot(p.x - shift, p.y + shift), 10, closed ? 0.001 : 0.02);
+      }
+    }
+  }
+  EXPECT_FALSE(interpolate({{1, 1}, {1, 1 + 1e-15}}, true).ok());
+}
+
 TEST(Curve, ValidateSaysWhatIsWrong) {
   EXPECT_FALSE(validate(Line2{{0, NAN}, {1, 1}}).ok());
   EXPECT_FALSE(validate(Arc2{{0, 0}, 0, 0, 1}).ok());

@@ -339,14 +339,25 @@ Nurbs2 hermite_to_nurbs(const std::vector<Point2>& q, const std::vector<Vec2>& d
 
 Result<Nurbs2> interpolate(const std::vector<Point2>& fit_points, bool closed, Vec2 start_tangent,
                            Vec2 end_tangent) {
-  std::vector<Point2> q;
+  Box2 extent;
   for (const Point2& p : fit_points) {
     if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
       return Error{ErrorCode::geometry, "a spline with a fit point that is not finite", {}};
     }
-    if (q.empty() || !(q.back() == p)) q.push_back(p);
+    extent.add(p);
   }
-  if (closed && q.size() > 1 && !(q.front() == q.back())) q.push_back(q.front());
+  // Points apart by rounding only (a closed spline that repeats its first point, computed again) are one.
+  constexpr double kSameFitPoint = 1e-12;  // of the size of the coordinates
+  const double same =
+      kSameFitPoint * (extent.width() + extent.height() + std::abs(extent.lo.x) + std::abs(extent.lo.y));
+  std::vector<Point2> q;
+  for (const Point2& p : fit_points) {
+    if (q.empty() || distance(q.back(), p) > same) q.push_back(p);
+  }
+  if (closed && q.size() > 1) {
+    if (distance(q.front(), q.back()) <= same) q.pop_back();
+    if (q.size() > 1) q.push_back(q.front());
+  }
   if (q.size() < 2) return Error{ErrorCode::geometry, "a spline with fewer than 2 different fit points", {}};
   const std::size_t m = q.size();
   std::vector<double> s(m, 0.0), h(m - 1);

@@ -8,6 +8,7 @@
 #include "burin/plan/laser/crossings.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -70,8 +71,9 @@ class Finder {
     std::vector<CrossingReport> reports;
     for (auto& [pair, meetings] : meetings_) {
       for (const bool deep : {true, false}) {
-        // The shallow test looks for anything beyond the size of rounding and of the points' own tolerance.
-        const double reach = deep ? tolerance_ : std::min(tolerance_, 10 * point_);
+        // The shallow test looks for anything that is more than a touch: the offset would follow a small loop
+        // the wrong way round.
+        const double reach = deep ? tolerance_ : std::min(tolerance_, point_);
         const auto where = pair.first == pair.second
                                ? self_crossing(pair.first, meetings, reach)
                                : pair_crossing(pair.first, pair.second, meetings, reach);
@@ -126,16 +128,47 @@ class Finder {
     }
   }
 
-  /// Whether any segment of `outline` but those in `skip` comes within `reach` of p.
-  template <class Skip>
-  bool near(std::uint32_t outline, Point2 p, double reach, const Skip& skip) const {
+  /// Whether any segment of `outline` comes within `reach` of p; away(segment) says how far one is.
+  template <class Away>
+  bool near(std::uint32_t outline, Point2 p, double reach, const Away& away) const {
     const geom::Box2 area = geom::Box2{p, p}.grown(reach);
-    return !tree_.query(area, [&](std::uint32_t k) {
-      return owner_[k] != outline || skip(k - first_[outline]) || nearest_on(segment(k), p).distance > reach;
+    return !tree_.query(
+        area, [&](std::uint32_t k) { return owner_[k] != outline || away(k - first_[outline]) > reach; });
+  }
+
+  /// Distance from p to what segment k of outline o has outside of the stretch from `a` to `b`.
+  double away_outside(std::uint32_t o, std::uint32_t k, Place a, Place b, Point2 p) const {
+    const Segment& s = segment(first_[o] + k);
+    const auto between = [&](double from, double to) {
+      if (to <= from) return std::numeric_limits<double>::infinity();
+      const Point2 start = from <= 0 ? s.a : point_on(s, from), end = to >= 1 ? s.b : point_on(s, to);
+      // Too short to be told from a full circle.
+      if (distance(start, end) <= point_ && to - from < 0.5) return distance(start, p);
+      return nearest_on({start, end, s.center, s.radius, 0}, p).distance;
+    };
+    const bool wraps = b < a || b == a;
+    const bool first = k == a.segment, last = k == b.segment;
+    if (first && last) {
+      return wraps ? between(b.fraction, a.fraction)
+                   : std::min(between(0, a.fraction), between(b.fraction, 1));
+    }
+    if (first) return between(0, a.fraction);
+    if (last) return between(b.fraction, 1);
+    const bool within = wraps ? k > a.segment || k < b.segment : k > a.segment && k < b.segment;
+    return within ? std::numeric_limits<double>::infinity() : nearest_on(s, p).distance;
+  }
+
+  /// Whether the straight step from p on segment k of outline o to q meets no other segment of the outline.
+  bool free_step(std::uint32_t o, std::uint32_t k, Point2 p, Point2 q) const {
+    const Segment step = geom::make_line(p, q);
+    return tree_.query(bounds_of(step), [&](std::uint32_t g) {
+      return owner_[g] != o || g == first_[o] + k ||
+             std::holds_alternative<geom::NoIntersection>(intersect(step, segment(g), 0));
     });
   }
 
-  /// Calls visit(point, tangent) at places spread over the stretch from `a` to `b` until it returns true.
+  /// Calls visit(point, tangent, segment) at places spread over the stretch from `a` to `b` until it returns
+  /// true.
   template <class Visit>
   bool walk(const ArcSpline& spline, Place a, Place b, const Visit& visit) const {
     const auto n = static_cast<std::uint32_t>(spline.segments.size());
@@ -151,10 +184,15 @@ class Finder {
         const Vec2 tangent = s.is_line()
                                  ? start_tangent(s)
                                  : (s.radius > 0 ? left(unit(p - s.center)) : right(unit(p - s.center)));
-        if (visit(p, tangent)) return true;
+        if (visit(p, tangent, k % n)) return true;
       }
     }
     return false;
+  }
+
+  static void same_places_once(std::vector<std::pair<Place, Point2>>& sorted) {
+    const auto same = [](const auto& x, const auto& y) { return x.first == y.first; };
+    sorted.erase(std::unique(sorted.begin(), sorted.end(), same), sorted.end());
   }
 
   std::optional<Point2> pair_crossing(std::uint32_t a, std::uint32_t b, std::vector<Meeting>& meetings,
@@ -165,10 +203,14 @@ class Finder {
       std::vector<std::pair<Place, Point2>> cuts;
       for (const Meeting& m : meetings) cuts.emplace_back(swapped ? m.on_second : m.on_first, m.point);
       std::sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+      same_places_once(cuts);
       bool inside = false, outside = false;
       for (std::size_t i = 0; i < cuts.size(); ++i) {
-        walk(mine, cuts[i].first, cuts[(i + 1) % cuts.size()].first, [&](Point2 p, Vec2) {
-          if (near(other, p, reach, [](std::uint32_t) { return false; })) return false;
+        walk(mine, cuts[i].first, cuts[(i + 1) % cuts.size()].first, [&](Point2 p, Vec2, std::uint32_t) {
+          const auto away = [&](std::uint32_t k) {
+            return nearest_on(segment(first_[other] + k), p).distance;
+          };
+          if (near(other, p, reach, away)) return false;
           (winding_number(outlines_[other], p) != 0 ? inside : outside) = true;
           return true;
         });
@@ -186,20 +228,17 @@ class Finder {
       cuts.emplace_back(m.on_second, m.point);
     }
     std::sort(cuts.begin(), cuts.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-    const auto n = static_cast<std::uint32_t>(spline.segments.size());
+    same_places_once(cuts);
     std::optional<int> side;
     for (std::size_t i = 0; i < cuts.size(); ++i) {
       const Place a = cuts[i].first, b = cuts[(i + 1) % cuts.size()].first;
-      const std::uint32_t last = b < a || b == a ? b.segment + n : b.segment;
-      const auto own = [&](std::uint32_t k) {
-        const std::uint32_t wrapped = k < a.segment ? k + n : k;
-        return wrapped <= last;
-      };
       std::optional<int> here;
-      walk(spline, a, b, [&](Point2 p, Vec2 tangent) {
-        if (near(o, p, reach, own)) return false;
-        // A step to the left, well inside the free room and clear of the stretch's own bends.
-        here = winding_number(spline, p + (0.25 * reach) * left(tangent));
+      walk(spline, a, b, [&](Point2 p, Vec2 tangent, std::uint32_t on) {
+        if (near(o, p, reach, [&](std::uint32_t k) { return away_outside(o, k, a, b, p); })) return false;
+        // A step to the left, well inside the free room; the stretch's own bends may stand in the way.
+        const Point2 q = p + (0.25 * reach) * left(tangent);
+        if (!free_step(o, on, p, q)) return false;
+        here = winding_number(spline, q);
         return true;
       });
       if (!here) continue;

@@ -101,6 +101,15 @@ class Container {
     return winding != 0;
   }
 
+  /// Whether p lies on the path, within `reach`.
+  bool touches(Point2 p, double reach) const {
+    return !tree_.query(Box2{p, p}.grown(reach), [&](std::uint32_t i) {
+      const Rise& r = rises_[i];
+      if (r.radius == 0) return geom::nearest_on(geom::make_line(r.a, r.b), p).distance > reach;
+      return std::abs(geom::distance(p, r.center) - r.radius) > reach;
+    });
+  }
+
  private:
   std::vector<Rise> rises_;
   geom::BoxTree2 tree_;
@@ -112,6 +121,24 @@ std::array<Point2, 3> witnesses(const geom::ArcSpline& spline) {
   const std::size_t n = s.size();
   return {geom::point_on(s[0], 0.5), geom::point_on(s[n / 3], n == 1 ? 0.25 : 0.41),
           geom::point_on(s[2 * n / 3], n <= 2 ? 0.77 : 0.59)};
+}
+
+/// Whether the path lies in the container: by points of it that do not lie on the container's own line, where
+/// rounding would decide. Paths that coincide contain each other as their witnesses say.
+bool is_inside(const geom::ArcSpline& path, const Container& container, double point_mm) {
+  const auto first = witnesses(path);
+  int inside = 0, seen = 0;
+  const auto ask = [&](Point2 p) {
+    if (container.touches(p, 10 * point_mm)) return;
+    ++seen;
+    inside += container.contains(p);
+  };
+  for (const Point2 p : first) ask(p);
+  for (std::size_t i = 0; i < path.segments.size() && seen == 0; ++i)
+    ask(geom::point_on(path.segments[i], 0.5));
+  if (seen > 0) return 2 * inside > seen;
+  for (const Point2 p : first) inside += container.contains(p);
+  return 2 * inside > static_cast<int>(first.size());
 }
 
 }  // namespace
@@ -144,12 +171,9 @@ std::vector<std::uint32_t> path_parents(const std::vector<CutPath>& paths, doubl
       return true;
     });
     std::sort(candidates.begin(), candidates.end(), smaller);
-    const auto points = witnesses(paths[i].spline);
     for (const std::uint32_t c : candidates) {
       if (!containers[c]) containers[c].emplace(paths[c].spline);
-      int inside = 0;
-      for (const Point2 p : points) inside += containers[c]->contains(p);
-      if (2 * inside < static_cast<int>(points.size())) continue;
+      if (!is_inside(paths[i].spline, *containers[c], point_mm)) continue;
       parents[i] = c;
       break;
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "burin/base/text.h"
@@ -109,6 +110,8 @@ class ProfileMaker {
         diagnostics_.info_at("crossing_repaired",
                              what + ", less deep than the tolerance of " + mm(tolerance) + "; repaired",
                              c.position.x, c.position.y, w);
+        repaired_.insert(profile_.outlines[c.first].contour);
+        repaired_.insert(profile_.outlines[c.second].contour);
         continue;
       }
       if (options_.side == Side::on) {
@@ -224,16 +227,27 @@ class ProfileMaker {
       region.push_back(by_nesting || o.role == Role::outer ? o.spline : reversed(o.spline));
       if (!by_nesting && !runs_outside(o)) d = -d;
     }
-    auto result = geom::offset_region(region, d, {options_.tolerance.point_mm});
-    if (!result) {
-      Error error = result.error();
+    const auto in_group = [&](Error error) {
       if (error.where.entity.empty() && group.size() == 1)
         error.where = where(profile_.outlines[group[0]].contour);
       return error;
+    };
+    std::vector<std::uint32_t> owner(group.size());
+    std::iota(owner.begin(), owner.end(), 0u);
+    if (std::any_of(group.begin(), group.end(),
+                    [&](std::uint32_t i) { return repaired_.count(profile_.outlines[i].contour) != 0; })) {
+      // Small loops are taken off first (the region of positive winding): grown with the rest, a loop that
+      // turns the other way would open the offset of the corner it sits at.
+      auto simple = geom::offset_region(region, 0, {options_.tolerance.point_mm});
+      if (!simple) return in_group(simple.error());
+      region = std::move(simple->contours);
+      owner = std::move(simple->from);
     }
+    auto result = geom::offset_region(region, d, {options_.tolerance.point_mm});
+    if (!result) return in_group(result.error());
     std::set<std::uint32_t> seen;
     for (std::size_t k = 0; k < result->contours.size(); ++k) {
-      const Outline& from = profile_.outlines[group[result->from[k]]];
+      const Outline& from = profile_.outlines[group[owner[result->from[k]]]];
       ArcSpline& spline = result->contours[k];
       report_merged(spline, group);
       for (const Segment& s : spline.segments) seen.insert(s.source);
@@ -245,10 +259,44 @@ class ProfileMaker {
       if (!by_nesting && !runs_outside(from)) spline = reversed(spline);
       profile_.paths.push_back({std::move(spline), role, from.depth, from.contour});
     }
-    const std::set<std::uint32_t> vanished(result->vanished.begin(), result->vanished.end());
+    std::set<std::uint32_t> alive;
+    const std::set<std::uint32_t> gone(result->vanished.begin(), result->vanished.end());
+    for (std::uint32_t k = 0; k < region.size(); ++k) {
+      if (gone.count(k) != 0) continue;
+      for (const std::uint32_t g : owners_of(region[k], group, owner[k])) alive.insert(g);
+    }
+    std::set<std::uint32_t> vanished;
+    for (std::uint32_t g = 0; g < group.size(); ++g) {
+      if (alive.count(g) == 0) vanished.insert(g);
+    }
     for (const std::uint32_t v : vanished) report_vanished(profile_.outlines[group[v]]);
     report_removed_loops(group, vanished, seen);
     return {};
+  }
+
+  void number_pieces() {
+    if (!piece_contour_.empty()) return;
+    piece_contour_.resize(profile_.pieces.size(), 0);
+    for (const Outline& o : profile_.outlines) {
+      for (const Segment& s : o.spline.segments) piece_contour_[s.source] = o.contour;
+    }
+  }
+
+  /// Members of the group that the contour of the region was made of: several, when crossing ones were
+  /// united.
+  std::set<std::uint32_t> owners_of(const ArcSpline& contour, const std::vector<std::uint32_t>& group,
+                                    std::uint32_t first) {
+    std::set<std::uint32_t> owners{first};
+    if (repaired_.empty()) return owners;
+    number_pieces();
+    std::set<std::uint32_t> drawn;
+    for (const Segment& s : contour.segments) {
+      if (s.source != geom::kCornerSource) drawn.insert(piece_contour_[s.source]);
+    }
+    for (std::uint32_t g = 0; g < group.size(); ++g) {
+      if (drawn.count(profile_.outlines[group[g]].contour) != 0) owners.insert(g);
+    }
+    return owners;
   }
 
   void report_vanished(const Outline& o) {
@@ -261,12 +309,7 @@ class ProfileMaker {
 
   void report_merged(const ArcSpline& path, const std::vector<std::uint32_t>& group) {
     if (group.size() < 2) return;
-    if (piece_contour_.empty()) {
-      piece_contour_.resize(profile_.pieces.size(), 0);
-      for (const Outline& o : profile_.outlines) {
-        for (const Segment& s : o.spline.segments) piece_contour_[s.source] = o.contour;
-      }
-    }
+    number_pieces();
     std::set<std::uint32_t> contours;
     Point2 p;
     for (const Segment& s : path.segments) {
@@ -288,6 +331,45 @@ class ProfileMaker {
             " contours are closer than twice the offset and are cut as one: what lies between is lost (" +
             names + ")",
         p.x, p.y, where(*contours.begin()));
+  }
+
+  /// Segments of the outline that no path runs beside, although one should. Of drawn lines and arcs those
+  /// that left nothing in the result; of free curves also a part, unless it ends in a corner of the outline:
+  /// what a round beam leaves in inner corners is no news.
+  template <class Clearance>
+  std::vector<std::uint32_t> lost_segments(const ArcSpline& outline, const std::set<std::uint32_t>& seen,
+                                           const Clearance& clearance) const {
+    const auto& segments = outline.segments;
+    const std::size_t n = segments.size();
+    const auto suspect = [&](std::size_t k) {
+      return seen.count(segments[k].source) == 0 || profile_.pieces[segments[k].source].fitted;
+    };
+    std::vector<bool> lost(n);
+    bool any = false;
+    for (std::size_t k = 0; k < n; ++k) {
+      lost[k] = suspect(k) && clearance(point_on(segments[k], 0.5)) > options_.tolerance.path_mm;
+      any = any || lost[k];
+    }
+    if (!any) return {};
+    const auto corner_before = [&](std::size_t k) {
+      return geom::count_g1_breaks({{segments[(k + n - 1) % n], segments[k]}, false},
+                                   options_.tolerance.tangent_rad) > 0;
+    };
+    const auto forgive = [&](std::size_t k) {
+      const bool forgiven = lost[k] && seen.count(segments[k].source) != 0;
+      if (forgiven) lost[k] = false;
+      return forgiven;
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      if (!corner_before(k)) continue;
+      for (std::size_t i = 0; i < n && (i == 0 || !corner_before((k + i) % n)) && forgive((k + i) % n);) ++i;
+      for (std::size_t i = 1; i <= n && forgive((k + n - i) % n) && !corner_before((k + n - i) % n);) ++i;
+    }
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      if (lost[k]) out.push_back(k);
+    }
+    return out;
   }
 
   /// Stretches of an outline that have no path beside them although the contour is cut: notches and fillets
@@ -319,11 +401,9 @@ class ProfileMaker {
       int count = 0;
       double worst = 0;
       Point2 position;
-      for (const Segment& s : o.spline.segments) {
-        if (seen.count(s.source) != 0) continue;
-        const Point2 p = point_on(s, 0.5);
+      for (const std::uint32_t k : lost_segments(o.spline, seen, clearance)) {
+        const Point2 p = point_on(o.spline.segments[k], 0.5);
         const double excess = clearance(p);
-        if (excess <= options_.tolerance.path_mm) continue;
         ++count;
         if (excess > worst) worst = excess, position = p;
       }
@@ -364,6 +444,7 @@ class ProfileMaker {
   Diagnostics& diagnostics_;
   Profile profile_;
   std::vector<std::uint32_t> piece_contour_;
+  std::set<std::uint32_t> repaired_;  ///< contours with shallow crossings
 };
 
 }  // namespace
