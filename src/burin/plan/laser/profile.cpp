@@ -342,7 +342,9 @@ class ProfileMaker {
     const auto& segments = outline.segments;
     const std::size_t n = segments.size();
     const auto suspect = [&](std::size_t k) {
-      return seen.count(segments[k].source) == 0 || profile_.pieces[segments[k].source].fitted;
+      if (profile_.pieces[segments[k].source].fitted) return true;
+      // Nothing as short as the bridge of a gap is a narrow stretch by itself.
+      return seen.count(segments[k].source) == 0 && length_of(segments[k]) > options_.tolerance.join_mm;
     };
     std::vector<bool> lost(n);
     bool any = false;

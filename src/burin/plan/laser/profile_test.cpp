@@ -419,16 +419,32 @@ TEST(Crossings, NeedlesAndSlivers) {
 }
 
 TEST(Crossings, LoopsAtCornersSmallerThanTheTolerance) {
-  // The sides of a square run 0.004 past each other.
-  const double e = 0.004;
-  Sketch s;
-  s.polygon({{0, 0}, {10 + e, 0}, {10 + e, -e}, {10, -e}, {10, 10}, {0, 10}});
-  const Made m = make(s, offset_by(0.3));
-  REQUIRE_PROFILE(m);
-  EXPECT_EQ(m.notes.count("self_crossing"), 0u) << listed(m.notes);
-  EXPECT_EQ(m->paths.size(), 1u);
-  EXPECT_NEAR(m.area(0), grown_square(10, 0.3), 0.05);
-  EXPECT_FALSE(m.notes.anything_left_out()) << listed(m.notes);
+  // The sides of a square run past each other, so that a small loop turns the other way; down to first and
+  // last vertices that differ by a millionth. The beam must go around the corner as if there were none.
+  const double d = 0.3;
+  for (const double e : {0.004, 1e-4, 1e-6}) {
+    const std::vector<std::vector<Point2>> shapes{
+        {{0, 0}, {10 + e, 0}, {10 + e, -e}, {10, -e}, {10, 10}, {0, 10}},
+        {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {e, -e}},
+        {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {-e, e}},
+        {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {e, e}},
+        {{0, 0}, {10, 0}, {10, 10}, {0, 10}, {-e, -e}}};
+    for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
+      for (const bool backwards : {false, true}) {
+        SCOPED_TRACE("shape " + std::to_string(shape) + ", size " + std::to_string(e));
+        std::vector<Point2> p = shapes[shape];
+        if (backwards) std::reverse(p.begin(), p.end());
+        for (const double offset : {d, -d}) {
+          const Made m = make(Sketch().polygon(p), offset_by(offset));
+          REQUIRE_PROFILE(m);
+          EXPECT_EQ(m.notes.count("self_crossing"), 0u) << listed(m.notes);
+          EXPECT_FALSE(m.notes.anything_left_out()) << listed(m.notes);
+          ASSERT_EQ(m->paths.size(), 1u);
+          EXPECT_NEAR(m.area(0), offset > 0 ? grown_square(10, d) : (10 - 2 * d) * (10 - 2 * d), 50 * e);
+        }
+      }
+    }
+  }
 }
 
 /// Whether a polygon with vertices in general position crosses itself: brute force.
