@@ -247,7 +247,9 @@ TEST(Nurbs, InterpolationTakesPointsThatDifferByRoundingForOne) {
       ASSERT_TRUE(n.ok()) << n.error().message;
       for (int i = 0; i <= 300; ++i) {
         const Point2 p = point_at(*n, i / 300.0);
-        EXPECT_NEAR(std::hypot(p.x - shift, p.y + shift), 10, closed ? 0.001 : 0.02);
+        // Natural ends are flat: the open curve leaves the circle there, by less than the chord does (sagitta
+        // 0.0856).
+        EXPECT_NEAR(std::hypot(p.x - shift, p.y + shift), 10, closed ? 0.001 : 0.05);
       }
     }
   }
