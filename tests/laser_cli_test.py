@@ -277,7 +277,7 @@ class Geometry(Case):
                 self.assertAlmostEqual(report["lengths_mm"]["rapid"], sum(m.length() for m in moves if m.code == 0),
                                        delta=70)  # from where the first rapid starts is the machine's
                 self.assertEqual(report["lengths_mm"]["lead"], 0)
-                self.assertEqual(self.codes(report), ["default_feed"])
+                self.assertEqual(self.codes(report), ["default_feed", "no_power"])
                 # Every coordinate has at most the dialect's decimals.
                 for number in re.findall(r"[XYIJ]([-+.\d]+)", self.read("out.ngc")):
                     self.assertLessEqual(len(number.partition(".")[2]), 3 if dialect == "grbl" else 4)
@@ -396,7 +396,7 @@ class Process(Case):
     def test_default_feed_is_said(self):
         moves, report = self.job(dxf(rect(0, 0, 9, 9)), "--kerf", "0.2")
         self.assertEqual({m.feed for m in moves if m.on}, {1000})
-        self.assertEqual(self.codes(report), ["default_feed"])
+        self.assertEqual(self.codes(report), ["default_feed", "no_power"])
 
 
 class Traps(Case):

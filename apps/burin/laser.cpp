@@ -15,6 +15,7 @@
 #include "burin/view/picture.h"
 #include "cli.h"
 #include "commands.h"
+#include "kerf_options.h"
 
 namespace burin::cli {
 namespace {
@@ -24,10 +25,8 @@ namespace fs = std::filesystem;
 struct LaserArgs {
   std::string drawing;
   // kerf
-  std::optional<double> thickness_mm, power_w, speed_mm_min, kerf_mm, offset_mm;
-  std::string laser = model::kDefaultLaser, material = model::kDefaultMaterial, database;
-  std::optional<int> model_version;
-  bool interpolate = false, force = false;
+  KerfOptions model;
+  std::optional<double> kerf_mm, offset_mm;
   // drawing
   io::Units units = io::Units::from_file;
   std::vector<std::string> layers;
@@ -50,24 +49,14 @@ Error usage(std::string message) {
 // -----------------------------------------------------------------------------------------------------
 
 Result<Kerf> predict_kerf(const LaserArgs& args, Session& session) {
-  if (!args.thickness_mm || !args.power_w || !args.speed_mm_min) {
+  if (!args.model.thickness_mm || !args.model.power_w || !args.model.speed_mm_min) {
     return usage("the kerf is not known (--thickness, --power and --speed together, or --kerf, or --offset)");
   }
-  auto database =
-      args.database.empty() ? model::KerfDatabase::open_default() : model::KerfDatabase::open(args.database);
+  auto database = open_database(args.model, session);
   if (!database) return database.error();
-  model::KerfQuery query;
-  query.laser = args.laser;
-  query.material = args.material;
-  query.thickness_mm = *args.thickness_mm;
-  query.power_w = *args.power_w;
-  query.speed_mm_min = *args.speed_mm_min;
-  query.version = args.model_version;
-  query.interpolate = args.interpolate;
-  query.force = args.force;
-  auto prediction = database->predict(query);
+  auto prediction = database->predict(to_query(args.model));
   if (!prediction) return prediction.error();
-  if (!prediction->note.empty()) session.diagnostics.info("kerf_note", prediction->note);
+  warn(*prediction, session.diagnostics);
   return Kerf{prediction->kerf_mm, prediction->offset_mm, *prediction};
 }
 
@@ -76,7 +65,7 @@ Result<Kerf> kerf_of(const LaserArgs& args, Session& session) {
     return usage("--kerf and --offset say the same thing twice (one of them)");
   if (args.kerf_mm) return Kerf{*args.kerf_mm, 0.5 * *args.kerf_mm, std::nullopt};
   if (args.offset_mm) return Kerf{2 * std::abs(*args.offset_mm), *args.offset_mm, std::nullopt};
-  if (args.plan.side == laser::Side::on && !args.thickness_mm) return Kerf{};
+  if (args.plan.side == laser::Side::on && !args.model.thickness_mm) return Kerf{};
   return predict_kerf(args, session);
 }
 
@@ -139,17 +128,10 @@ Result<void> parse_copies(const std::string& text, laser::CopyOptions& copies) {
 
 Json model_json(const Kerf& kerf) {
   if (!kerf.prediction) return nullptr;
-  const model::KerfModel& m = kerf.prediction->model;
-  return {{"laser", m.laser},
-          {"material", m.material},
-          {"thickness_mm", m.thickness_mm},
-          {"lambda1", m.lambda1},
-          {"lambda2", m.lambda2},
-          {"r", m.r},
-          {"source", m.source},
-          {"version", m.version},
-          {"permissible", kerf.prediction->permissible},
-          {"interpolated", kerf.prediction->interpolated}};
+  Json json = to_json(kerf.prediction->model);
+  json["permissible_setting"] = kerf.prediction->permissible;
+  json["interpolated"] = kerf.prediction->interpolated;
+  return json;
 }
 
 template <class T>
@@ -217,9 +199,8 @@ PathCounts path_counts(const laser::LaserJob& job, const laser::LaserOptions& pl
   return n;
 }
 
-void fill_report(const LaserArgs& args, const Kerf& kerf, const io::Drawing& drawing,
+void fill_report(const Kerf& kerf, const io::Drawing& drawing,
                  const laser::LaserOptions& plan, const laser::LaserJob& job, Session& session) {
-  (void)args;
   fill_parameters(kerf, drawing, plan, session);
   std::size_t outer = 0, holes = 0, open = 0, engraved = 0;
   for (const laser::Outline& o : job.profile.outlines) {
@@ -292,9 +273,9 @@ Result<laser::LaserOptions> plan_options(const LaserArgs& args, const Kerf& kerf
   plan.offset_mm = kerf.offset_mm;
   plan.arcs = !args.no_arcs;
   plan.tolerance.path_mm = session.common.tolerance_mm;
-  plan.power_w = args.power_w.value_or(0);
-  if (args.speed_mm_min) {
-    plan.feed_mm_min = *args.speed_mm_min;
+  plan.power_w = args.model.power_w.value_or(0);
+  if (args.model.speed_mm_min) {
+    plan.feed_mm_min = *args.model.speed_mm_min;
   } else {
     plan.feed_mm_min = 1000;
     session.diagnostics.info("default_feed", "no --speed given: 1000 mm/min is used");
@@ -358,22 +339,15 @@ Result<void> run_laser(const LaserArgs& args, Session& session) {
   job->toolpath.program.name = fs::path(args.drawing).stem().string();
   auto nc = post::emit(job->toolpath.program, *dialect, {}, session.diagnostics);
   if (!nc) return in_file(nc.error());
-  fill_report(args, *kerf, *drawing, *plan, *job, session);
+  fill_report(*kerf, *drawing, *plan, *job, session);
   return put_outputs(*drawing, *kerf, *job, *nc, nc_path, session);
 }
 
 void add_kerf_options(CLI::App& app, LaserArgs& a) {
-  add_number(app, "--thickness", a.thickness_mm, kPositiveLength, "sheet thickness, for the kerf prediction");
-  add_number(app, "--power", a.power_w, kPower, "laser power; also the S word of the program");
-  add_number(app, "--speed", a.speed_mm_min, kSpeed,
-             "cutting speed; also the feed of the program (default 1000)");
-  add_text(app, "--laser", a.laser, "NAME", "laser of the kerf model (default ndyag-cw)");
-  add_text(app, "--material", a.material, "NAME", "material of the kerf model (default CSP1N)");
-  add_text(app, "--db", a.database, "FILE", "kerf database (default: the user's, else the built-in table)");
-  add_integer(app, "--model-version", a.model_version, 1, 1000000,
-              "version of the kerf model (default: the newest)");
-  app.add_flag("--interpolate", a.interpolate, "predict between two known thicknesses");
-  app.add_flag("--force", a.force, "predict outside the permissible range");
+  add_kerf_model(app, a.model);
+  add_power(app, a.model);
+  add_speed(app, a.model);
+  add_force(app, a.model);
   add_number(app, "--kerf", a.kerf_mm, kLength, "width of the cut, instead of a prediction");
   add_number(app, "--offset", a.offset_mm, kSignedLength,
              "offset of the beam from the outline; negative: the other side");

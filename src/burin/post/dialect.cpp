@@ -112,6 +112,7 @@ std::vector<Key> keys() {
       {"active_comments", lines(&D::active_comments)},
       {"two_digit_codes", flag(&D::two_digit_codes)},
       {"beam_on", text(&D::beam_on, {"power"})},
+      {"beam_on_plain", text(&D::beam_on_plain)},
       {"beam_off", text(&D::beam_off)},
       {"power_scale", number(&D::power_scale, 1e-6, 1e6)},
       {"power_inline", flag(&D::power_inline)},

@@ -31,6 +31,7 @@ struct Dialect {
   std::vector<std::string> active_comments;  ///< words that make a comment do something; '*' goes before them
   bool two_digit_codes = true;               ///< G01 rather than G1
   std::string beam_on, beam_off;  ///< e.g. "M3 S{power}", "M5"; {power} is the S value. Empty: no beam
+  std::string beam_on_plain;      ///< the same when the power is not known: the control keeps its S
   double power_scale = 1.0;       ///< S per W
   bool power_inline = false;      ///< the power can change while the beam is on by an S word alone
   std::string spindle_cw = "M3 S{rpm}", spindle_ccw = "M4 S{rpm}", spindle_off = "M5";

@@ -165,6 +165,13 @@ class Emitter {
     beam_ = beam;
     const std::string power =
         number_text(beam.power_w * dialect_.power_scale, dialect_.power_decimals, false);
+    // S0 would burn nothing; without S the control keeps the power it has.
+    if (beam.on && beam.power_w == 0 && !change && !dialect_.beam_on_plain.empty()) {
+      if (!std::exchange(said_no_power_, true)) {
+        diagnostics_.info("no_power", "no power is known: the beam goes on without an S word");
+      }
+      return word_line(dialect_.beam_on_plain, "a beam");
+    }
     if (change && dialect_.power_inline) return line("S" + power);
     return word_line(beam.on ? fill(dialect_.beam_on, "power", power) : dialect_.beam_off, "a beam");
   }
@@ -410,6 +417,7 @@ class Emitter {
   int motion_code_ = -1, plane_code_ = 17;
   std::string feed_, written_feed_, length_;
   std::optional<cl::Beam> beam_;
+  bool said_no_power_ = false;
   std::optional<cl::Spindle> spindle_;
   std::optional<cl::Coolant> coolant_;
 };

@@ -463,6 +463,25 @@ TEST(Emit, ModalWordsAreNotRepeated) {
   EXPECT_TRUE(has(emitted(p, dialect("grbl")).text, "M4 S100\nG1 X5 F1500\n"));
 }
 
+TEST(Emit, ABeamOfUnknownPowerGoesOnWithoutS) {
+  cl::Program p;
+  p.add(cl::Rapid{{{1, 2, 0}}});
+  p.add(cl::FeedRate{1500});
+  for (const double x : {5.0, 9.0}) {
+    p.add(cl::Beam{true, 0});
+    p.add(cl::Feed{{{x, 2, 0}}});
+    p.add(cl::Beam{});
+  }
+  for (const auto& [name, word] : {std::pair{"linuxcnc", "M3\n"}, {"fanuc", "M3\n"}, {"grbl", "M4\n"}}) {
+    Diagnostics diagnostics;
+    const auto nc = emit(p, dialect(name), {}, diagnostics);
+    ASSERT_TRUE(nc.ok());
+    EXPECT_TRUE(has(nc->text, word)) << nc->text;
+    EXPECT_FALSE(has(nc->text, "S0"));
+    EXPECT_EQ(diagnostics.count("no_power"), 1u);
+  }
+}
+
 TEST(Emit, TheLineMapNamesTheRecordOfEveryMotionLine) {
   Random random(15);
   const cl::Program program = random_program(random, false, true);

@@ -126,9 +126,9 @@ class Rounder {
     return best;
   }
 
-  /// How far the exact arc runs from what goes out, in steps. Controls differ where start and end radius differ (a
-  /// spiral, or a circle of either radius and a last step): the worst of them counts. The distance varies as the sine
-  /// of an angle that turns by at most one turn: nine samples see it within 8 %.
+  /// How far the exact arc runs from what goes out, in steps. Controls differ where start and end radius
+  /// differ (a spiral, or a circle of either radius and a last step): the worst of them counts. The distance
+  /// varies as the sine of an angle that turns by at most one turn: nine samples see it within 8 %.
   double deviation(const ArcPiece& piece, double from, double to) const {
     const Vec2 center = vec(piece.offset);
     const double first = norm(center), last = norm(vec(piece.end) - vec(at_) - center);
@@ -137,7 +137,7 @@ class Rounder {
     for (int i = 0; i <= kSamples; ++i) {
       const double part = static_cast<double>(i) / kSamples;
       const double radius = norm(steps_from_start(exact(from + part * (to - from))) - center);
-worst = std::max({worst, std::abs(radius - first), std::abs(radius - last)});
+      worst = std::max({worst, std::abs(radius - first), std::abs(radius - last)});
     }
     return worst;
   }

@@ -76,8 +76,7 @@ TEST(RoundArc, SmallArcsAreLines) {
   const PlaneArc tiny = arc_of({0, 0}, 0.002, 0.3, 4, false);
   const auto tiny_pieces = round_arc(tiny, grid_of(tiny.start, 4), {.min_radius_mm = 0.005});
   ASSERT_TRUE(tiny_pieces);
-  for (const ArcPiece& piece : *tiny_pieces)
-    EXPECT_TRUE(piece.line);
+  for (const ArcPiece& piece : *tiny_pieces) EXPECT_TRUE(piece.line);
   // Sagitta of 0.25 steps.
   const double sweep = std::sqrt(8 * 0.25e-4 / 100);
   const PlaneArc flat = arc_of({0, 0}, 100, 1, sweep, true);

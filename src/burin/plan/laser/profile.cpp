@@ -27,9 +27,6 @@ constexpr double kOffsetGuarantee = 1e-6;
 std::string mm(double v) {
   return format_fixed(v, 4) + " mm";
 }
-std::string at(Point2 p) {
-  return "(" + format_fixed(p.x, 3) + ", " + format_fixed(p.y, 3) + ")";
-}
 
 class ProfileMaker {
  public:
@@ -96,41 +93,56 @@ class ProfileMaker {
     for (std::size_t i = 0; i < closed.size(); ++i) {
       if (profile_.outlines[i].role == Role::outer) closed[i] = profile_.outlines[i].spline;
     }
-    const double tolerance = options_.tolerance.path_mm;
+    const double tolerance = options_.tolerance.path_mm, point = options_.tolerance.point_mm;
+    const auto found = detail::find_crossings(closed, tolerance, point);
+    // Whether a wider tolerance would do is what the user of a drawing with overshooting corners wants to
+    // know.
+    std::set<std::pair<std::uint32_t, std::uint32_t>> deep_at_ten;
+    if (std::any_of(found.begin(), found.end(), [](const auto& c) { return c.deep; })) {
+      for (const detail::CrossingReport& c : detail::find_crossings(closed, 10 * tolerance, point)) {
+        if (c.deep) deep_at_ten.insert({c.first, c.second});
+      }
+    }
     std::set<std::uint32_t> out;
-    for (const detail::CrossingReport& c :
-         detail::find_crossings(closed, tolerance, options_.tolerance.point_mm)) {
-      const Where w = where(profile_.outlines[c.first].contour);
-      const bool self = c.first == c.second;
-      const std::string what = self ? "the contour crosses itself at " + at(c.position)
-                                    : "the contour crosses another one (" +
-                                          where(profile_.outlines[c.second].contour).entity + ") at " +
-                                          at(c.position);
+    for (const detail::CrossingReport& c : found) {
+      report_crossing(c, deep_at_ten.count({c.first, c.second}) == 0);
       if (!c.deep) {
-        diagnostics_.info_at("crossing_repaired",
-                             what + ", less deep than the tolerance of " + mm(tolerance) + "; repaired",
-                             c.position.x, c.position.y, w);
         repaired_.insert(profile_.outlines[c.first].contour);
         repaired_.insert(profile_.outlines[c.second].contour);
-        continue;
+      } else if (options_.side != Side::on) {
+        out.insert(c.first);
+        out.insert(c.second);
       }
-      if (options_.side == Side::on) {
-        diagnostics_.info_at(self ? "self_crossing" : "contours_cross", what + "; cut on the line as drawn",
-                             c.position.x, c.position.y, w);
-        continue;
-      }
-      diagnostics_.left_out_at(self ? "self_crossing" : "contours_cross",
-                               what + ", deeper than the tolerance of " + mm(tolerance) + "; " +
-                                   (self ? "it is left out" : "both are left out"),
-                               c.position.x, c.position.y, w);
-      out.insert(c.first);
-      out.insert(c.second);
     }
     std::vector<Outline> kept;
     for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
       if (out.count(i) == 0) kept.push_back(std::move(profile_.outlines[i]));
     }
     profile_.outlines = std::move(kept);
+  }
+
+  void report_crossing(const detail::CrossingReport& c, bool repairable) {
+    const double tolerance = options_.tolerance.path_mm;
+    const Where w = where(profile_.outlines[c.first].contour);
+    const bool self = c.first == c.second;
+    const char* code = self ? "self_crossing" : "contours_cross";
+    const std::string what =
+        self ? "the contour crosses itself"
+             : "the contour crosses " + where(profile_.outlines[c.second].contour).to_string();
+    if (!c.deep) {
+      diagnostics_.info_at("crossing_repaired",
+                           what + ", less deep than the tolerance of " + mm(tolerance) + "; repaired",
+                           c.position.x, c.position.y, w);
+    } else if (options_.side == Side::on) {
+      diagnostics_.info_at(code, what + "; cut on the line as drawn", c.position.x, c.position.y, w);
+    } else {
+      diagnostics_.left_out_at(
+          code,
+          what + ", deeper than the tolerance of " + mm(tolerance) + "; " +
+              (self ? "it is left out" : "both are left out") +
+              (repairable ? " (a tolerance of " + mm(10 * tolerance) + " would repair it)" : ""),
+          c.position.x, c.position.y, w);
+    }
   }
 
   void nest() {
