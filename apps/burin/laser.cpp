@@ -129,7 +129,7 @@ Result<void> parse_copies(const std::string& text, laser::CopyOptions& copies) {
 Json model_json(const Kerf& kerf) {
   if (!kerf.prediction) return nullptr;
   Json json = to_json(kerf.prediction->model);
-  json["permissible_setting"] = kerf.prediction->permissible;
+  json["permissible"] = kerf.prediction->permissible;  // of this setting, in place of the ranges
   json["interpolated"] = kerf.prediction->interpolated;
   return json;
 }
