@@ -542,7 +542,7 @@ class Traps(Case):
         self.assertEqual(self.codes(report), ["default_feed", "duplicate_removed", "no_power", "open_chain"])
         self.assertAlmostEqual(sum(m.length() for m in moves if m.on), 20, delta=1e-3)
         moves, report = self.job(dxf(circle(0, 0, 10), circle(0, 0, 10, handle="C2")), "--offset", "0.2", *PLAIN)
-        self.assertEqual(self.codes(report), ["default_feed", "duplicate_removed"])
+        self.assertEqual(self.codes(report), ["default_feed", "duplicate_removed", "no_power"])
         self.assertEqual(len(loops(moves)), 1)
 
     def test_crossing_contours(self):
