@@ -144,9 +144,9 @@ TEST(LaserHtml, IsOnePageWhoseDataParsesAndCannotEscape) {
   for (const auto& m : data["moves"]) {
     if (m[7] == static_cast<int>(laser::MoveKind::cut)) ++cut;
   }
-  EXPECT_EQ(cut,
-            8 + 3 * 2);  // 4 lines, 4 corner arcs; two half circles a hole, the start falls between them or
-  // splits one: see the lengths in the SVG test
+  // 4 lines and 4 corner arcs, two half circles a hole; a start in the middle of a segment makes two of it.
+  EXPECT_GE(cut, 8 + 3 * 2);
+  EXPECT_LE(cut, 8 + 3 * 2 + 4);
 }
 
 }  // namespace
