@@ -76,15 +76,19 @@ void BoxTree::cast(std::size_t level, std::size_t node, Ray& ray) const {
   const double y_lo = swap ? box.lo.x : box.lo.y, y_hi = swap ? box.hi.x : box.hi.y;
   const double x_lo = swap ? box.lo.y : box.lo.x, x_hi = swap ? box.hi.y : box.hi.x;
   if (ray.p.y > y_hi || ray.p.y < y_lo || ray.p.x > x_hi) return;
-  std::size_t lo = node, hi = node + 1;
   if (x_lo > ray.p.x) {
-    for (std::size_t k = 0; k < level; ++k) lo *= kFan, hi *= kFan;
-    hi = std::min(hi, curves_.segments.size());
-    if (loop_of_[lo] == loop_of_[hi - 1]) {
-      const Point2 a = curves_.segments[lo].a, b = curves_.segments[hi - 1].b;
-      ray.number += above(swap ? b.x : b.y, ray.p.y) - above(swap ? a.x : a.y, ray.p.y);
-      return;
-    }
+    // Wholly beyond: a run counts by its two ends alone, and loops that lie in it as a whole count nothing.
+    const std::size_t lo = node << (kFanBits * level);
+    const std::size_t hi = std::min((node + 1) << (kFanBits * level), curves_.segments.size());
+    const auto run = [&](std::size_t first, std::size_t end) {
+      const Point2 from = curves_.segments[first].a, to = curves_.segments[end - 1].b;
+      return above(swap ? to.x : to.y, ray.p.y) - above(swap ? from.x : from.y, ray.p.y);
+    };
+    const std::uint32_t first_loop = loop_of_[lo], last_loop = loop_of_[hi - 1];
+    ray.number += first_loop == last_loop
+                      ? run(lo, hi)
+                      : run(lo, curves_.first[first_loop + 1]) + run(curves_.first[last_loop], hi);
+    return;
   }
   if (level == 0) {
     cast_segment(node, ray);

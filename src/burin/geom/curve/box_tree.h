@@ -27,7 +27,7 @@ struct RawCurves {
 
 class BoxTree {
  public:
-  static constexpr std::size_t kFan = 4;
+  static constexpr std::size_t kFanBits = 2, kFan = std::size_t{1} << kFanBits;
 
   /// Boxes are grown by eps. `curves` must outlive the tree.
   BoxTree(const RawCurves& curves, double eps);
