@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// APT CL text: reading never fails badly, and what was read survives writing and reading: the same records, numbers
-// within what the writer promises, and from then on the same bytes.
+// APT CL text: reading never fails badly, and what was read survives writing and reading: the same records,
+// numbers within what the writer promises, and from then on the same bytes.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -16,8 +16,12 @@ void require(bool ok) {
   if (!ok) std::abort();
 }
 
-bool near(geom::Point3 a, geom::Point3 b) { return distance(a, b) <= 1e-6; }
-bool near(const cl::Pose& a, const cl::Pose& b) { return near(a.tip, b.tip) && norm(a.axis - b.axis) <= 1e-9; }
+bool near(geom::Point3 a, geom::Point3 b) {
+  return distance(a, b) <= 1e-6;
+}
+bool near(const cl::Pose& a, const cl::Pose& b) {
+  return near(a.tip, b.tip) && norm(a.axis - b.axis) <= 1e-9;
+}
 
 bool same(const cl::Record& a, const cl::Record& b) {
   if (a.index() != b.index()) return false;
@@ -47,7 +51,8 @@ bool writable(const cl::Program& program) {
         arc && (norm(arc->center - geom::Point3{}) > 1e7 || arc->radius > 1e7))
       return false;
     if (const auto* feed = std::get_if<cl::FeedRate>(&record); feed && feed->mm_min > 1e7) return false;
-    if (const auto* tool = std::get_if<cl::ToolChange>(&record); tool && tool->diameter + tool->corner_radius > 1e7)
+    if (const auto* tool = std::get_if<cl::ToolChange>(&record);
+        tool && tool->diameter + tool->corner_radius > 1e7)
       return false;
   }
   return !program.from || norm(program.from->tip - geom::Point3{}) <= 1e7;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Part programs: reading never fails badly; what was read goes out in a dialect, and is read again with the same ends.
+// Part programs: reading never fails badly; what was read goes out in a dialect, and is read again with the
+// same ends.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -17,8 +18,8 @@ void require(bool ok) {
 }
 
 const post::Dialect& dialect(std::uint8_t which) {
-  static const std::array<post::Dialect, 3> dialects = {*post::find_dialect("fanuc"), *post::find_dialect("grbl"),
-                                                        *post::find_dialect("linuxcnc")};
+  static const std::array<post::Dialect, 3> dialects = {
+      *post::find_dialect("fanuc"), *post::find_dialect("grbl"), *post::find_dialect("linuxcnc")};
   return dialects[which % 3];
 }
 

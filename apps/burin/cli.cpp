@@ -124,7 +124,8 @@ class Check {
       return;
     }
     const bool once = option->get_items_expected_max() == 1;
-    if (once && !given_.insert(option).second) throw UsageError{name + " is given twice (once is enough)", app_};
+    if (once && !given_.insert(option).second)
+      throw UsageError{name + " is given twice (once is enough)", app_};
     const bool attached = is_long ? equals != std::string::npos : argument.size() > 2;
     const bool empty = attached && is_long && equals + 1 == argument.size();
     if (empty || (!attached && at_ + 1 >= arguments_.size())) {
@@ -196,7 +197,8 @@ int checked_integer(const std::string& option, const std::string& text, int min,
 
 /// An option that hands its text to `take`, which throws CLI::ValidationError.
 CLI::Option* add_checked(CLI::App& app, const std::string& name, const std::string& placeholder,
-                         const std::string& description, const std::function<void(const std::string&)>& take) {
+                         const std::string& description,
+                         const std::function<void(const std::string&)>& take) {
   return app.add_option_function<std::string>(name, take, description)->type_name(placeholder);
 }
 

@@ -199,8 +199,8 @@ PathCounts path_counts(const laser::LaserJob& job, const laser::LaserOptions& pl
   return n;
 }
 
-void fill_report(const Kerf& kerf, const io::Drawing& drawing,
-                 const laser::LaserOptions& plan, const laser::LaserJob& job, Session& session) {
+void fill_report(const Kerf& kerf, const io::Drawing& drawing, const laser::LaserOptions& plan,
+                 const laser::LaserJob& job, Session& session) {
   fill_parameters(kerf, drawing, plan, session);
   std::size_t outer = 0, holes = 0, open = 0, engraved = 0;
   for (const laser::Outline& o : job.profile.outlines) {

@@ -11,10 +11,10 @@
 namespace burin::geom {
 
 /// A line (radius 0) or a circular arc from a to b about `center`; radius > 0: counter-clockwise (left turn),
-/// radius < 0: clockwise; |radius| in mm. The four are redundant on purpose (ends must meet exactly, centres must
-/// not drift) and agree within kArcConsistency * (|radius| + 1). An arc sweeps more than 0 and less than a full
-/// turn; a circle is two arcs. `source` says where it came from: an index the caller chose, carried through
-/// offset and cleaning; kCornerSource on arcs that were added at convex corners.
+/// radius < 0: clockwise; |radius| in mm. The four are redundant on purpose (ends must meet exactly, centres
+/// must not drift) and agree within kArcConsistency * (|radius| + 1). An arc sweeps more than 0 and less than
+/// a full turn; a circle is two arcs. `source` says where it came from: an index the caller chose, carried
+/// through offset and cleaning; kCornerSource on arcs that were added at convex corners.
 struct Segment {
   Point2 a, b;
   Point2 center{};
@@ -70,7 +70,8 @@ ArcSpline reversed(const ArcSpline& s);
 /// Winding number of a closed spline about p (p not on it).
 int winding_number(const ArcSpline& s, Point2 p);
 double distance_to(const ArcSpline& s, Point2 p);
-/// Breaks inside the spline (and at the seam when closed) where the direction turns by more than `tangent_rad`.
+/// Breaks inside the spline (and at the seam when closed) where the direction turns by more than
+/// `tangent_rad`.
 int count_g1_breaks(const ArcSpline& s, double tangent_rad);
 
 }  // namespace burin::geom

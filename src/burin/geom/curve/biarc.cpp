@@ -31,7 +31,8 @@ bool make_biarc(Point2 a, Vec2 ta, Point2 b, Vec2 tb, double r, Biarc& out) {
 }
 
 Segment to_segment(const Arc& arc) {
-  // A turn of less than this is rounding, and the centre could not be stored: the sagitta is below 2e-14 chords.
+  // A turn of less than this is rounding, and the centre could not be stored: the sagitta is below 2e-14
+  // chords.
   constexpr double kStraight = 1e-13;
   if (std::abs(arc.k) * distance(arc.a, arc.b) <= kStraight) return make_line(arc.a, arc.b);
   return make_arc(arc.a, arc.b, arc.a + left(arc.ta) / arc.k, arc.k > 0);

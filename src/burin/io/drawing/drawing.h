@@ -35,10 +35,12 @@ struct Entity {
 struct Drawing {
   std::vector<Entity> entities;
   /// Scale that was applied to the numbers of the file, mm per drawing unit, and how it was found:
-  /// "$INSUNITS 4 (mm)", "no units, mm assumed", "width 210mm over viewBox 210", "--units inch", "72 dpi (Illustrator)".
+  /// "$INSUNITS 4 (mm)", "no units, mm assumed", "width 210mm over viewBox 210", "--units inch", "72 dpi
+  /// (Illustrator)".
   double mm_per_unit = 1.0;
   std::string units_reason;
-  /// Entities that carry no cutting geometry, by kind, with how many (TEXT, DIMENSION, image, hidden layers, ...).
+  /// Entities that carry no cutting geometry, by kind, with how many (TEXT, DIMENSION, image, hidden layers,
+  /// ...).
   std::map<std::string, int> ignored;
   /// All layer names that the file declares or uses, sorted; for the check of --layers.
   std::vector<std::string> layers;

@@ -21,29 +21,29 @@ enum class Corners {
 };
 enum class LeadKind { arc, line, none };
 enum class Order { inner_first, file };
-/// climb (and automatic): the part lies to the right of the travel, the waste to the left (outer contours clockwise,
-/// holes counter-clockwise); conventional: the other way round.
+/// climb (and automatic): the part lies to the right of the travel, the waste to the left (outer contours
+/// clockwise, holes counter-clockwise); conventional: the other way round.
 enum class Direction { automatic, climb, conventional };
 
 struct LeadOptions {
   LeadKind kind = LeadKind::arc;
-  double length_mm = 2.0;   ///< of lead-in; shortened where there is no room
-  double out_mm = 0.0;      ///< lead-out; 0: none
+  double length_mm = 2.0;  ///< of lead-in; shortened where there is no room
+  double out_mm = 0.0;     ///< lead-out; 0: none
 };
 struct CornerOptions {
   Corners kind = Corners::round;
-  double angle_deg = 30.0;    ///< corners of the outline that turn by more are sharp
-  double loop_mm = 1.5;       ///< size of the loop
-  double slow_mm = 1.0;       ///< length before and after the corner
-  double slow_factor = 0.5;   ///< of feed; `power` scales power by the same
+  double angle_deg = 30.0;   ///< corners of the outline that turn by more are sharp
+  double loop_mm = 1.5;      ///< size of the loop
+  double slow_mm = 1.0;      ///< length before and after the corner
+  double slow_factor = 0.5;  ///< of feed; `power` scales power by the same
 };
 struct MicroJointOptions {
   int per_contour = 0;
-  double width_mm = 0.3;    ///< of the material that stays: the beam is off for this and the kerf
+  double width_mm = 0.3;  ///< of the material that stays: the beam is off for this and the kerf
 };
 struct CopyOptions {
   int columns = 1, rows = 1;
-  double gap_mm = 5.0;        ///< between the bounding boxes of the cut paths
+  double gap_mm = 5.0;  ///< between the bounding boxes of the cut paths
 };
 /// For the time estimate.
 struct MotionLimits {
@@ -53,21 +53,21 @@ struct MotionLimits {
 };
 
 struct LaserOptions {
-  double offset_mm = 0;       ///< d = kerf / 2; may be negative
+  double offset_mm = 0;  ///< d = kerf / 2; may be negative
   double feed_mm_min = 1000;
-  double power_w = 0;         ///< 0: unknown, beam on without power value
+  double power_w = 0;  ///< 0: unknown, beam on without power value
   double engrave_power_factor = 0.2;
   Side side = Side::automatic;
   Order order = Order::inner_first;
   Direction direction = Direction::automatic;
-  bool arcs = true;           ///< false: lines only (--no-arcs)
+  bool arcs = true;  ///< false: lines only (--no-arcs)
   geom::FitMethod fit = geom::FitMethod::minimal;
   Tolerance tolerance;
   std::map<std::string, Treatment> layers;  ///< by layer name; others are cut
   LeadOptions lead;
   CornerOptions corners;
   MicroJointOptions micro_joints;
-  double overcut_mm = 0;      ///< past the start of a closed contour, beam on
+  double overcut_mm = 0;  ///< past the start of a closed contour, beam on
   CopyOptions copies;
   MotionLimits motion;
 };
