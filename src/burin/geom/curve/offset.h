@@ -35,10 +35,13 @@ struct OffsetResult {
 
 /// Preconditions on the contours (checked: geometry error that names the contour): closed, at least two
 /// segments, finite, consistent arcs. They may touch within tolerance, but must not cross deeper than
-/// point_mm: where they do, the result is the offset of the region of positive winding. Guarantees: every
-/// point of the result's boundary is at distance |d| of the input's boundary within 1e-6 mm and every point
-/// at less than |d| - 1e-6 mm is on the right side of it. Cost: O(n log n) for drawings (n segments; more
-/// only when n boundary pieces come within d of each other).
+/// point_mm; where they do, only d = 0 keeps its promise and gives the region of positive winding: offset
+/// that result (loops that wind negatively would otherwise hide corners, overlaps would shrink too late).
+///
+/// Guarantees: every point of the result's boundary is at distance |d| of the input's boundary within 1e-6 mm
+/// and every point at less than |d| - 1e-6 mm is on the right side of it.
+///
+/// Cost: O(n log n) for drawings (n segments; more only when n boundary pieces come within d of each other).
 Result<OffsetResult> offset_region(const std::vector<ArcSpline>& contours, double d_mm,
                                    const OffsetOptions& options = {});
 
