@@ -5,6 +5,8 @@ namespace burin::io {
 
 std::string Entity::name() const {
   if (id.empty()) return line > 0 ? kind + " at line " + std::to_string(line) : kind;
+  if (id.find('/') != std::string::npos && id.find(kind) != std::string::npos)
+    return id;  // the way names its kinds
   const bool svg = !kind.empty() && kind[0] >= 'a' && kind[0] <= 'z';
   return kind + (svg ? "#" : " ") + id;
 }

@@ -367,12 +367,14 @@ class Joiner {
 
   void report_open(const std::vector<Item>& items, double gap, Found& found) const {
     const Point2 a = items.front().from, b = items.back().to;
-    found.warnings.push_back(
-        {Severity::left_out, "open_chain",
-         "open outline of " + std::to_string(items.size()) + (items.size() == 1 ? " curve" : " curves") +
-             " from " + place(a) + " to " + place(b) + ", ends " + format_fixed(gap, 4) + " mm apart (" +
-             entity_of(items.back()).name() + " is the last): cut on the line, no offset",
-         where(entity_of(items.front())), std::array{a.x, a.y, 0.0}});
+    const io::Entity &first = entity_of(items.front()), &last = entity_of(items.back());
+    const std::string end = &first == &last ? "" : " (" + last.name() + " is the last)";
+    found.warnings.push_back({Severity::left_out, "open_chain",
+                              "open outline of " + std::to_string(items.size()) +
+                                  (items.size() == 1 ? " curve" : " curves") + " from " + place(a) + " to " +
+                                  place(b) + ", ends " + format_fixed(gap, 4) + " mm apart" + end +
+                                  ": cut on the line, no offset",
+                              where(first), std::array{a.x, a.y, 0.0}});
   }
 
   void report_branch(const Branch& branch) {
