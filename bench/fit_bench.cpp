@@ -15,7 +15,7 @@ using namespace burin::geom;
 constexpr double kTolerances[] = {0.1, 0.01, 0.001};
 
 /// Arguments: method, index of the tolerance, whether directions are free at the corners.
-void fit_letter_k(benchmark::State& state) {
+void burin_fit_letter_k(benchmark::State& state) {
   const std::vector<Nurbs2> k = letter_k();
   FitOptions options;
   options.method = state.range(0) == 0 ? FitMethod::minimal : FitMethod::bisect;
@@ -41,13 +41,13 @@ void fit_letter_k(benchmark::State& state) {
   state.counters["segments"] = segments;
   state.counters["bound_mm"] = deviation;
 }
-BENCHMARK(fit_letter_k)
+BENCHMARK(burin_fit_letter_k)
     ->ArgNames({"bisect", "tolerance", "free"})
     ->ArgsProduct({{0, 1}, {0, 1, 2}, {0, 1}})
     ->Unit(benchmark::kMicrosecond);
 
 /// One cubic of about 11 mm: what drawings are full of.
-void fit_cubic(benchmark::State& state) {
+void burin_fit_cubic(benchmark::State& state) {
   std::mt19937 random(13);
   const auto uniform = [&](double a, double b) {
     return a + (b - a) * static_cast<double>(random()) / 4294967295.0;
@@ -75,7 +75,7 @@ void fit_cubic(benchmark::State& state) {
   }
   state.counters["segments"] = static_cast<double>(segments) / static_cast<double>(fitted);
 }
-BENCHMARK(fit_cubic)
+BENCHMARK(burin_fit_cubic)
     ->ArgNames({"bisect", "tolerance"})
     ->ArgsProduct({{0, 1}, {0, 1, 2}})
     ->Unit(benchmark::kMicrosecond);
