@@ -133,6 +133,10 @@ inline double distance(Point3 a, Point3 b) {
   return norm(a - b);
 }
 
+constexpr Point3 lerp(Point3 a, Point3 b, double t) {
+  return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y), a.z + t * (b.z - a.z)};
+}
+
 constexpr Point2 xy(Point3 p) {
   return {p.x, p.y};
 }
@@ -161,6 +165,36 @@ struct Box2 {
   constexpr bool contains(Point2 p) const { return lo.x <= p.x && p.x <= hi.x && lo.y <= p.y && p.y <= hi.y; }
   constexpr double width() const { return empty() ? 0 : hi.x - lo.x; }
   constexpr double height() const { return empty() ? 0 : hi.y - lo.y; }
+};
+
+/// Axis-parallel box in space; empty as constructed.
+struct Box3 {
+  Point3 lo{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+            std::numeric_limits<double>::infinity()};
+  Point3 hi{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+            -std::numeric_limits<double>::infinity()};
+
+  constexpr bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+  constexpr void add(Point3 p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  }
+  constexpr void add(const Box3& b) {
+    lo = {std::min(lo.x, b.lo.x), std::min(lo.y, b.lo.y), std::min(lo.z, b.lo.z)};
+    hi = {std::max(hi.x, b.hi.x), std::max(hi.y, b.hi.y), std::max(hi.z, b.hi.z)};
+  }
+  constexpr Box3 grown(double by) const {
+    return {{lo.x - by, lo.y - by, lo.z - by}, {hi.x + by, hi.y + by, hi.z + by}};
+  }
+  constexpr bool overlaps(const Box3& b) const {
+    return lo.x <= b.hi.x && b.lo.x <= hi.x && lo.y <= b.hi.y && b.lo.y <= hi.y && lo.z <= b.hi.z &&
+           b.lo.z <= hi.z;
+  }
+  constexpr bool contains(Point3 p) const {
+    return lo.x <= p.x && p.x <= hi.x && lo.y <= p.y && p.y <= hi.y && lo.z <= p.z && p.z <= hi.z;
+  }
+  /// Length of the diagonal, 0 when empty: the size that relative tolerances refer to.
+  double diagonal() const { return empty() ? 0 : norm(hi - lo); }
 };
 
 /// Affine map of the plane: p -> (a x + c y + e, b x + d y + f), the order of SVG's matrix(a b c d e f).

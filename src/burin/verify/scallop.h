@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scallop and gouge of ball-end paths, measured by brute force on the design surface from the tool's
+// positions. Uses nothing of plan/: a check must not share the planner's mistakes. mm.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "burin/geom/surface/nurbs.h"
+#include "burin/geom/vec.h"
+
+namespace burin::verify {
+
+/// Tip positions along one pass (a polyline dense enough that its chords may stand for the path; the caller
+/// samples it), in the order of the passes on that surface.
+struct TipPass {
+  std::vector<geom::Point3> tips;
+};
+
+struct ScallopOptions {
+  double radius_mm = 0;
+  double stock_mm = 0;           ///< heights count from the surface moved by this along its normal
+  bool normal_reversed = false;  ///< the tool is on the side of -(Su x Sv)
+  /// Sampling of the surface, mm: the height between samples differs by less than spacing^2 / (8 R) + slope
+  /// terms; chosen from radius and side step when 0.
+  double spacing_mm = 0;
+  std::size_t max_samples = 5'000'000;
+};
+
+struct ScallopReport {
+  std::size_t samples = 0;
+  /// Material left above the surface between pass i and i + 1, largest along the line between them: the
+  /// minimum and maximum of that ridge over the length of the passes.
+  struct Ridge {
+    double min_mm = 0, max_mm = 0;
+  };
+  std::vector<Ridge> ridges;
+  double scallop_min_mm = 0, scallop_max_mm = 0;  ///< over all ridges but the last
+  double gouge_max_mm = 0;                        ///< deepest cut below the surface
+  geom::Point3 gouge_at;
+};
+
+/// For every sample q of the surface with normal n: how far q + h n is left uncovered by all balls swept
+/// along the passes (h > 0 left standing, h < 0 cut away).
+ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
+                              const ScallopOptions& options);
+
+}  // namespace burin::verify
