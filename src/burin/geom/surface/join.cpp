@@ -7,6 +7,7 @@
 
 #include "burin/geom/surface/join_assemble.h"
 #include "burin/geom/surface/join_edges.h"
+#include "burin/geom/surface/join_forced.h"
 
 namespace burin::geom {
 namespace {
@@ -68,7 +69,7 @@ void report_borders(const std::vector<Source>& sources, const CellGraph& graph,
   std::map<std::pair<std::size_t, std::size_t>, bool> seen;
   for (std::size_t i = 0; i < graph.cells.size(); ++i) {
     for (const Link& link : graph.cells[i].links) {
-      if (link.cell < 0 || link.artificial) continue;
+      if (link.cell < 0 || link.inner) continue;
       if (group_of_cell[i] == group_of_cell[static_cast<std::size_t>(link.cell)]) continue;
       const std::size_t a = sources[static_cast<std::size_t>(graph.cells[i].source)].patch;
       const std::size_t b =
@@ -100,6 +101,7 @@ Result<Composite> join(const std::vector<NurbsSurface>& patches, const JoinOptio
   std::vector<Source> sources;
   for (std::size_t i = 0; i < patches.size(); ++i)
     sources.push_back(source_of(patches[i], i, options.tolerance_mm));
+  force_partial_joins(sources, options, out.report, diagnostics);
   const std::vector<Contact> contacts = find_contacts(sources, options, out.report, diagnostics);
   const CellGraph graph = make_cells(sources, contacts, options, out.report);
   std::vector<int> group_of_cell(graph.cells.size(), -1);

@@ -215,7 +215,7 @@ Layout lay_out(const std::vector<Source>& sources, const Cutter& cutter, CellGra
       }
     }
     Link inside;
-    inside.artificial = true;
+    inside.artificial = inside.inner = true;
     for (int b = 0; b < nv; ++b) {
       for (int a = 0; a < nu; ++a) {
         const int cell = first + a + b * nu;
@@ -255,6 +255,7 @@ bool connect_contact(const Cutter& cutter, const Layout& layout, const Contact& 
     link.gap_mm = c.match.gap_mm;
     link.exact = c.match.exact;
     link.partial = c.partial;
+    link.inner = c.inner;
     const int a = layout.on_side(c.a, c.side_a, k), b = layout.on_side(c.b, c.side_b, std::min(b0, b1));
     if (a == b && c.side_a == c.side_b) continue;
     connect(graph, a, c.side_a, b, c.side_b, link);
@@ -331,7 +332,7 @@ CellGraph make_cells(const std::vector<Source>& sources, const std::vector<Conta
   for (int cell = 0; cell < static_cast<int>(graph.cells.size()); ++cell) {
     for (SideIndex side = 0; side < 4; ++side) {
       Link& link = graph.cells[static_cast<std::size_t>(cell)].links[static_cast<std::size_t>(side)];
-      if (link.artificial) link.barrier = leaves_contact_open(graph, cell, side);
+      if (link.inner) link.barrier = leaves_contact_open(graph, cell, side);
     }
   }
   return graph;

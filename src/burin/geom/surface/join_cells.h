@@ -32,7 +32,8 @@ struct Source {
   std::array<EdgeCurve, 4> edges;
   std::array<bool, 4> collapsed{};
   double length_u = 0, length_v = 0;  ///< of the longer edge in that direction
-  double deviation_mm = 0;            ///< of the patch, when bent
+  bool bent = false;                  ///< a part that a forced join made
+  double deviation_mm = 0;            ///< then: of all parts from the patch
 
   double length(Direction d) const { return d == Direction::u ? length_u : length_v; }
 };
@@ -42,7 +43,8 @@ struct Contact {
   int a = 0, b = 0;  ///< sources, a <= b
   SideIndex side_a = 0, side_b = 0;
   Match match;
-  bool partial = false;  ///< does not cover both sides
+  bool partial = false;  ///< does not cover both sides of the patches
+  bool inner = false;    ///< of parts of the same bent patch
   bool smooth = false;   ///< the tangent planes agree along the contact
 };
 
@@ -65,7 +67,8 @@ struct Link {
   bool exact = true;
   bool partial = false;     ///< a contact that the rules want joined
   bool artificial = false;  ///< the cells are neighbours in the same source
-  bool barrier = false;     ///< artificial, and crossing it would leave a partial contact open
+  bool inner = false;       ///< in the same patch: artificial, or both are parts of a bent one
+  bool barrier = false;     ///< inner, and crossing it would leave a partial contact open
 };
 
 /// One cell of the grid that the cuts make of a source. Intervals in the source's parameters.

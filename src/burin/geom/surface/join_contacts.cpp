@@ -66,12 +66,16 @@ void compare_sides(const std::vector<Source>& sources, int a, SideIndex side_a, 
                    double tolerance, std::vector<Candidate>& out) {
   const auto& edge_a = sources[static_cast<std::size_t>(a)].edges[static_cast<std::size_t>(side_a)];
   const auto& edge_b = sources[static_cast<std::size_t>(b)].edges[static_cast<std::size_t>(side_b)];
+  const Source &one = sources[static_cast<std::size_t>(a)], &two = sources[static_cast<std::size_t>(b)];
+  const bool same_patch = one.patch == two.patch, bent = one.bent || two.bent;
   for (const Overlap& overlap : overlaps(edge_a, edge_b, tolerance)) {
     const Match &first = overlap.pieces.front(), &last = overlap.pieces.back();
     const bool partial = !covers_side(first.a0, last.a1) || !covers_side(first.b0, last.b1);
     if (a == b && partial) continue;
     for (const Match& piece : overlap.pieces) {
-      Candidate candidate{{a, b, side_a, side_b, piece, partial, false}, false};
+      Candidate candidate;
+      candidate.contact = {
+          a, b, side_a, side_b, piece, partial || (bent && !same_patch), bent && same_patch, false};
       judge_angle(sources, candidate);
       out.push_back(candidate);
     }

@@ -18,6 +18,8 @@ constexpr double kFlat = 1e6;
 /// Tangents this much shorter than the others are degenerate: no statement about the plane there.
 constexpr double kDegenerate = 1e-7;
 constexpr int kNewtonSteps = 12;
+/// Steps of the search for the maximum between the samples.
+constexpr int kHalvings = 10;
 
 std::vector<double> spans_in(const std::vector<double>& knots, Interval t) {
   std::vector<double> at{t.lo};
@@ -25,6 +27,12 @@ std::vector<double> spans_in(const std::vector<double>& knots, Interval t) {
     if (knot > at.back() && knot < t.hi) at.push_back(knot);
   at.push_back(t.hi);
   return at;
+}
+
+double widest_step(const std::vector<double>& at) {
+  double widest = 0;
+  for (std::size_t i = 1; i < at.size(); ++i) widest = std::max(widest, at[i] - at[i - 1]);
+  return widest;
 }
 
 std::vector<double> samples_in(const std::vector<double>& knots, Interval t, int per_span) {
@@ -114,14 +122,29 @@ double distance_by_samples(const NurbsSurface& joined, const Region& region, con
   const std::vector<double> vs = samples_in(joined.knots_v, region.v, kSamples);
   SurfaceEvaluator on_joined(joined), on_source(source);
   double most = 0;
-  for (const double v : vs) {
-    for (const double u : us) {
-      const Point2 at = patch_parameters(map, {u, v});
-      const Point3 p = on_joined.point(u, v), q = on_source.point(at.x, at.y);
-      double apart = distance(p, q);
-      if (apart > negligible_mm && apart > most)
-        apart = std::max(local_distance(source, p, at), local_distance(joined, q, {u, v}));
-      most = std::max(most, apart);
+  Point2 worst{us.front(), vs.front()};
+  const auto look = [&](Point2 at) {
+    const Point2 there = patch_parameters(map, at);
+    const Point3 p = on_joined.point(at.x, at.y), q = on_source.point(there.x, there.y);
+    double apart = distance(p, q);
+    if (apart > negligible_mm && apart > most)
+      apart = std::max(local_distance(source, p, there), local_distance(joined, q, at));
+    if (!(apart > most)) return false;
+    most = apart;
+    worst = at;
+    return true;
+  };
+  for (const double v : vs)
+    for (const double u : us) look({u, v});
+  if (most <= negligible_mm) return most;
+  // Uphill from the worst sample.
+  Vec2 step{widest_step(us), widest_step(vs)};
+  for (int halving = 0; halving < kHalvings; ++halving) {
+    step = 0.5 * step;
+    const Point2 from = worst;
+    for (const Vec2 way : {Vec2{1, 0}, Vec2{-1, 0}, Vec2{0, 1}, Vec2{0, -1}}) {
+      look({std::clamp(from.x + way.x * step.x, region.u.lo, region.u.hi),
+            std::clamp(from.y + way.y * step.y, region.v.lo, region.v.hi)});
     }
   }
   return most;
