@@ -11,6 +11,7 @@
 #include "burin/geom/surface/evaluate.h"
 #include "burin/geom/surface/modify.h"
 #include "burin/job/cycle_job.h"
+#include "burin/nc/program.h"
 #include "burin/post/emit.h"
 #include "burin/servo/measure.h"
 #include "burin/verify/scallop.h"
@@ -102,7 +103,9 @@ TEST(CycleJob, ScallopIsWhatWasAskedFor) {
         measure_scallop(s, tips_of(job.runs[0], 0), {.radius_mm = 3, .normal_reversed = reversed_normal(s)});
     EXPECT_LE(report.scallop_max_mm, method == nc::PathMethod::iso_scallop ? 0.02 * 1.02 : 0.02 * (1 + 1e-6))
         << i;
-    if (method == nc::PathMethod::iso_scallop) EXPECT_GE(report.scallop_min_mm, 0.02 * 0.98) << i;
+    if (method == nc::PathMethod::iso_scallop) {
+      EXPECT_GE(report.scallop_min_mm, 0.02 * 0.98) << i;
+    }
     EXPECT_LT(report.gouge_max_mm, 1e-3);
     EXPECT_GT(report.ridges.size(), 10u);
   }
@@ -176,7 +179,9 @@ TEST(CycleJob, StretchesFollowEachOther) {
     EXPECT_LT(distance(at, s.path.start()), 1e-9);
     at = s.path.end();
     // Rapids stay at or above the highest tip except straight down onto the safety height.
-    if (s.feed_mm_min == 0) EXPECT_GE(std::max(s.path.start().z, s.path.end().z), 29.999);
+    if (s.feed_mm_min == 0) {
+      EXPECT_GE(std::max(s.path.start().z, s.path.end().z), 29.999);
+    }
   }
 }
 
