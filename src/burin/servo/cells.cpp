@@ -19,6 +19,10 @@ constexpr double kNotable = 0.02;
 /// Largest turn of the tangent within a cell, rad: the axes' shares change with the direction.
 constexpr double kMaxTurn = 0.3;
 
+/// Largest turn of the path within a chord, rad. Beyond, a chord jumps over bends, and which ones changes with
+/// every change of the profile.
+constexpr double kChordTurn = 0.5;
+
 double largest(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -30,7 +34,8 @@ double chord_speed(double curvature, const Limits& limits) {
   const double eps = kMargin * limits.chord_error_mm;
   if (!(curvature > 0)) return std::numeric_limits<double>::infinity();
   const double rho = std::max(1 / curvature, eps);
-  return std::sqrt(8 * eps * rho - 4 * eps * eps) / limits.period_s;
+  const double chord = std::min(std::sqrt(8 * eps * rho - 4 * eps * eps), kChordTurn / curvature);
+  return chord / limits.period_s;
 }
 
 /// Speed that the derivatives at one place allow, without anything else.
@@ -254,11 +259,6 @@ double solve_cubic(double v, double cubic, double square, double linear, double 
 }
 
 }  // namespace
-
-double safe_speed(const Limits& l) {
-  const double t = l.period_s;
-  return 0.1 * std::min({l.jerk_mm_s3 * t * t, l.accel_mm_s2 * t, 5 * l.chord_error_mm / t});
-}
 
 std::vector<Cell> make_cells(const Track& track, const TrackRun& run, const Limits& limits) {
   CellMaker maker(track, limits);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <cstdlib>  // DBG
+#include <cstdio>  // DBG
 
 #include "burin/base/text.h"
 
@@ -16,6 +18,12 @@ constexpr double kAim = 0.999;
 constexpr int kRounds = 12;      ///< of lowering where a limit was passed, then the whole run is slowed
 constexpr int kSlowRounds = 80;  ///< of that
 constexpr int kSettle = 8;       ///< rounds to meet the end
+/// An arc between two setpoints this much longer than its chord is more than a bend of 2 rad.
+constexpr double kSkip = 1.4;
+/// The end missed by less than this share of the slowest step is taken at once; by more only when slowing at
+/// the bends that were jumped over (kSkipRounds of it) did not help.
+constexpr double kMissed = 1e-3;
+constexpr int kSkipRounds = 6;
 /// Share of the acceleration and jerk that stays for changes of feed where the path is curved; both others
 /// are tried.
 constexpr double kReserve = 0.3;
@@ -173,6 +181,12 @@ RunPlanner::Passage RunPlanner::walk(bool measure_chords) {
         at = goal;
       }
       const double next = key(at);
+      // A bend smaller than the chord is jumped over: slower there, or the chords do not add up steadily.
+      if (next - keys[0] > kSkip * covered + rounding_) mark(keys[0], next, kSkip);
+      if (getenv("DBG2") && next - keys[0] > kSkip * covered + rounding_) {  // DBG
+        auto cc = std::lower_bound(cells_.begin(), cells_.end(), keys[0], [](const Cell& c, double k) { return c.key1 < k; });  // DBG
+        fprintf(stderr, "  skip tick %lld key %.6g adv %.6g cov %.6g cell len %.3g kappa %.3g v %.4g floorstep %.3g slow %.3g T %g eps %g J %g\n", (long long)tick, keys[0], next-keys[0], covered, cc->length, cc->curvature, cell_limit(*cc, aim_, tau_, reserve_).v, safe_speed(limits_)*t, cc->slow, t, limits_.chord_error_mm, limits_.jerk_mm_s3);  // DBG
+      }  // DBG
       if (measure_chords) {
         const double end = tick == ticks_ ? total_ + found.left_over : s;
         for (; cell < cells_.size() && cells_[cell].key1 <= next; ++cell) {
@@ -247,7 +261,7 @@ Result<void> RunPlanner::plan() {
   for (Cell& c : cells_) {
     const double v = cell_limit(c, aim_, 3 * aim_.period_s, kReserve).v * aim_.period_s * c.curvature;
     c.s0 = s;
-    c.s1 = s += c.length * (1 - v * v / 24);
+    c.s1 = s += c.length / (1 + v * v / 24);
   }
   total_ = s;
   choose();
@@ -255,7 +269,9 @@ Result<void> RunPlanner::plan() {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (passage->worst <= 1) return {};
+    if (getenv("DBG")) fprintf(stderr, "run %zu-%zu L %.6g cells %zu tau %.4g r %.2g ticks %lld stretch %.3g worst %.6g left %.3g\n", run_.first, run_.end, run_.length, cells_.size(), tau_, reserve_, (long long)ticks_, stretch_, passage->worst, passage->left_over);  // DBG
+    const bool met = std::abs(passage->left_over) <= kMissed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
+    if (passage->worst <= 1 && (met || round >= kSkipRounds)) return {};
     lower();
   }
   return slow_down(1.02);
@@ -267,6 +283,7 @@ Result<void> RunPlanner::slow_down(double factor) {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
+    if (getenv("DBG")) fprintf(stderr, "run %zu-%zu L %.6g cells %zu tau %.4g r %.2g ticks %lld stretch %.3g worst %.6g left %.3g\n", run_.first, run_.end, run_.length, cells_.size(), tau_, reserve_, (long long)ticks_, stretch_, passage->worst, passage->left_over);  // DBG
     if (passage->worst <= 1) return {};
     factor = std::clamp(std::sqrt(passage->worst), 1.02, 1.5);
   }
