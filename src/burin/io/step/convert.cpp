@@ -319,6 +319,26 @@ NurbsSurface transformed(const NurbsSurface& surface, const gp_Trsf& by) {
   return out;
 }
 
+geom::Box3 close_bounds(const NurbsSurface& surface) {
+  constexpr int kParts = 4;  // of each span: what the net stands off shrinks by their square
+  constexpr std::size_t kMaxPoints = 20000;
+  if (surface.points.size() > kMaxPoints) return geom::bounds(surface);
+  const Handle(Geom_BSplineSurface) s = to_occt(surface);
+  const auto insert = [](const std::vector<double>& flat, const auto& add) {
+    for (std::size_t i = 0; i + 1 < flat.size(); ++i) {
+      for (int k = 1; k < kParts && flat[i] < flat[i + 1]; ++k)
+        add(flat[i] + (flat[i + 1] - flat[i]) * k / kParts);
+    }
+  };
+  insert(surface.knots_u, [&](double t) { s->InsertUKnot(t, 1, 0); });
+  insert(surface.knots_v, [&](double t) { s->InsertVKnot(t, 1, 0); });
+  geom::Box3 box;
+  for (int j = 1; j <= s->NbVPoles(); ++j) {
+    for (int i = 1; i <= s->NbUPoles(); ++i) box.add(point(s->Pole(i, j)));
+  }
+  return box;
+}
+
 std::string what_is_wrong(const NurbsSurface& s) {
   if (s.degree_u > geom::kMaxSurfaceDegree || s.degree_v > geom::kMaxSurfaceDegree)
     return "its degree is " + std::to_string(std::max(s.degree_u, s.degree_v)) + " (at most " +

@@ -38,6 +38,9 @@ Handle(Geom_BSplineSurface) to_occt(const geom::NurbsSurface& surface);
 
 geom::NurbsSurface transformed(const geom::NurbsSurface& surface, const gp_Trsf& by);
 
+/// Contains the surface: the net after knots have been inserted, which is close to the surface.
+geom::Box3 close_bounds(const geom::NurbsSurface& surface);
+
 /// Finite, no coordinate beyond kMaxCoordinate, weights above 0, degrees at most kMaxSurfaceDegree: what
 /// damaged numbers in a file break. Empty when fine, else the reason.
 std::string what_is_wrong(const geom::NurbsSurface& surface);

@@ -19,7 +19,7 @@ namespace {
 int pieces_of(Interval angles) {
   constexpr double kQuarter = 0.5 * geom::kPi;
   constexpr double kRounding = 1e-9;  // a quarter turn and rounding is one piece
-  return std::clamp(static_cast<int>(std::ceil(angles.length() / kQuarter - kRounding)), 1, 5);
+  return std::clamp(static_cast<int>(std::ceil(angles.length() / kQuarter - kRounding)), 1, 9);
 }
 
 double piece_end(Interval range, int pieces, int i) {

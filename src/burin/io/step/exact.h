@@ -34,7 +34,7 @@ struct MappedSurface {
 
 /// origin + t * direction.
 geom::NurbsCurve line(geom::Point3 origin, geom::Vec3 direction, geom::Interval t);
-/// center + cos t * x + sin t * y; x and y are half axes. At most a full turn.
+/// center + cos t * x + sin t * y; x and y are half axes. At most two turns.
 MappedCurve ellipse_arc(geom::Point3 center, geom::Vec3 x, geom::Vec3 y, geom::Interval angles);
 /// S(u, v) = origin + u * x + v * y.
 geom::NurbsSurface plane(geom::Point3 origin, geom::Vec3 x, geom::Vec3 y, geom::Interval u, geom::Interval v);
@@ -42,6 +42,7 @@ geom::NurbsSurface plane(geom::Point3 origin, geom::Vec3 x, geom::Vec3 y, geom::
 MappedSurface extrude(const MappedCurve& curve, geom::Vec3 direction, geom::Interval v);
 /// S(u, v) = meridian(v) turned by u around the axis through `origin` along the unit vector `axis`. Points of
 /// the meridian within `on_axis_mm` of the axis are put on it, so that a pole is one point exactly.
+/// At most two turns.
 MappedSurface revolve(const MappedCurve& meridian, geom::Point3 origin, geom::Vec3 axis,
                       geom::Interval angles, double on_axis_mm);
 

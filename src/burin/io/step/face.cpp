@@ -3,10 +3,13 @@
 
 #include <BRep_Tool.hxx>
 #include <Geom_BSplineSurface.hxx>
+#include <Geom_ElementarySurface.hxx>
+#include <Geom_SurfaceOfRevolution.hxx>
 #include <TopLoc_Location.hxx>
 #include <algorithm>
 #include <cmath>
 
+#include "burin/base/text.h"
 #include "burin/io/step/convert.h"
 #include "burin/io/step/trim.h"
 
@@ -71,13 +74,22 @@ double snapped(double t, const std::vector<double>& marks, const Handle(Geom_Sur
   return best;
 }
 
+/// How often a NURBS form may go round in this direction. A face never covers a place twice, but with a seam
+/// that is no iso-curve its loop needs more than one period of parameters. Arcs can give it.
+int max_turns(const Handle(Geom_Surface) & s, Direction direction) {
+  const bool arcs = s->IsKind(STANDARD_TYPE(Geom_ElementarySurface)) ||
+                    (direction == Direction::u && s->IsKind(STANDARD_TYPE(Geom_SurfaceOfRevolution)));
+  return arcs ? 2 : 1;
+}
+
 /// The range of one parameter that the loops need, inside of what the surface has.
-Result<Interval> clipped(Interval range, const Extent& extent) {
+Result<Interval> clipped(Interval range, const Extent& extent, int turns) {
   if (extent.period > 0) {
-    constexpr double kRounding = 1e-6;
-    if (range.length() > extent.period * (1 + kRounding))
-      return cannot("its boundary goes round more than once");
-    if (range.length() > extent.period * (1 - 1e-12)) range.hi = range.lo + extent.period;
+    constexpr double kRounding = 1e-6;  // of a turn, as the loops of files have it
+    if (range.length() > extent.period * (turns + kRounding))
+      return cannot("its boundary goes round more than " + std::string(turns == 1 ? "once" : "twice"));
+    if (std::abs(range.length() - extent.period) <= extent.period * kRounding)
+      range.hi = range.lo + extent.period;
   } else {
     range.lo = std::max(range.lo, extent.range.lo);
     range.hi = std::min(range.hi, extent.range.hi);
@@ -99,9 +111,9 @@ Result<Rectangle> rectangle(const Handle(Geom_Surface) & s, const std::vector<Bo
     const Box2 box = bounds(loops);
     r = {{box.lo.x, box.hi.x}, {box.lo.y, box.hi.y}};
   }
-  auto u = clipped(r.u, eu);
+  auto u = clipped(r.u, eu, max_turns(s, Direction::u));
   if (!u) return u.error();
-  auto v = clipped(r.v, ev);
+  auto v = clipped(r.v, ev, max_turns(s, Direction::v));
   if (!v) return v.error();
   r = {*u, *v};
   const std::vector<double> mu = marks(s, Direction::u, eu), mv = marks(s, Direction::v, ev);
@@ -113,8 +125,9 @@ Result<Rectangle> rectangle(const Handle(Geom_Surface) & s, const std::vector<Bo
   };
   snap(r.u, mu, Direction::u, before.v);
   snap(r.v, mv, Direction::v, before.u);
-  if (eu.period > 0 && r.u.length() > eu.period) r.u.hi = r.u.lo + eu.period;
-  if (ev.period > 0 && r.v.length() > ev.period) r.v.hi = r.v.lo + ev.period;
+  // Snapping may have gone to marks a rounding more than a period apart.
+  if (before.u.length() <= eu.period && r.u.length() > eu.period) r.u.hi = r.u.lo + eu.period;
+  if (before.v.length() <= ev.period && r.v.length() > ev.period) r.v.hi = r.v.lo + ev.period;
   return r;
 }
 
@@ -147,13 +160,16 @@ Result<CadFace> convert_face(const TopoDS_Face& face, const ReadCadOptions& opti
   if (!loops->empty()) {
     const Handle(Geom_BSplineSurface) nurbs = to_occt(mapped->surface);
     result.loops = polygons(*loops, mapped->u, mapped->v, nurbs, options.trim_tolerance_mm);
-    if (result.loops.empty()) return cannot("its boundary encloses no area");
+    if (result.loops.empty())
+      return Error{
+          ErrorCode::range, "it is thinner than " + format_shortest(options.trim_tolerance_mm) + " mm", {}};
     result.trimmed = !is_natural(result.loops, nurbs, options.trim_tolerance_mm);
     if (!result.trimmed) result.loops.clear();
   }
   const gp_Trsf& transformation = location.Transformation();
   result.surface = transformed(mapped->surface, transformation);
   if (std::string wrong = what_is_wrong(result.surface); !wrong.empty()) return cannot(std::move(wrong));
+  result.box = close_bounds(result.surface);
   result.reversed = (face.Orientation() == TopAbs_REVERSED) != transformation.IsNegative();
   return result;
 }

@@ -10,7 +10,8 @@
 namespace burin::io::step {
 
 /// Surface, orientation, kind and loops; number and name are the caller's. Error (geometry): why the face
-/// cannot be had, as the end of a sentence. May throw what OpenCASCADE throws.
+/// cannot be had, as the end of a sentence; (range): nothing of it is wider than the trim tolerance. May
+/// throw what OpenCASCADE throws.
 Result<CadFace> convert_face(const TopoDS_Face& face, const ReadCadOptions& options);
 
 }  // namespace burin::io::step

@@ -142,8 +142,11 @@ std::map<const TopoDS_TShape*, Handle(Standard_Transient)> origins(const Handle(
 
 void list_faces(Loaded& loaded, const Handle(XSControl_WorkSession) & session, Diagnostics& diagnostics) {
   const auto from = origins(session, diagnostics);
+  TopTools_IndexedMapOfShape of_solids;
+  for (TopExp_Explorer it(loaded.shape, TopAbs_SOLID); it.More(); it.Next())
+    TopExp::MapShapes(it.Current(), TopAbs_FACE, of_solids);
   for (TopExp_Explorer it(loaded.shape, TopAbs_FACE); it.More(); it.Next()) {
-    LoadedFace f{TopoDS::Face(it.Current()), "", ""};
+    LoadedFace f{TopoDS::Face(it.Current()), "", "", of_solids.Contains(it.Current())};
     if (const auto found = from.find(f.face.TShape().get()); found != from.end()) {
       f.name = face_name(found->second);
       f.entity = entity_label(session->Model(), found->second);

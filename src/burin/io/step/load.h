@@ -21,7 +21,8 @@ namespace burin::io::step {
 struct LoadedFace {
   TopoDS_Face face;
   std::string name;
-  std::string entity;  ///< "ADVANCED_FACE #12", "144 D17"; "" when not known
+  std::string entity;  ///< "face #12", "entity 144 D17"; "" when not known
+  bool of_solid = false;
 };
 
 struct Loaded {

@@ -53,6 +53,12 @@ Result<CadModel> convert(const Loaded& loaded, const ReadCadOptions& options, Di
   for (const int number : *wanted) {
     const LoadedFace& from = loaded.faces[static_cast<std::size_t>(number) - 1];
     auto face = face_or_reason(from, options);
+    if (!face && face.error().code == ErrorCode::range) {
+      diagnostics.info("sliver_face",
+                       "face " + std::to_string(number) + " is not taken: " + face.error().message,
+                       {.file = options.file_name, .entity = from.entity});
+      continue;
+    }
     if (!face) {
       diagnostics.left_out("face_left_out",
                            "face " + std::to_string(number) + " is left out: " + face.error().message,
@@ -61,7 +67,8 @@ Result<CadModel> convert(const Loaded& loaded, const ReadCadOptions& options, Di
     }
     face->number = number;
     face->name = from.name;
-    model.bounds.add(geom::bounds(face->surface));
+    face->of_solid = from.of_solid;
+    model.bounds.add(face->box);
     model.faces.push_back(std::move(*face));
   }
   if (model.faces.empty()) {

@@ -143,11 +143,19 @@ void gather(std::vector<BoundaryLoop>& loops, const Extent& u, const Extent& v) 
 
 // --- polygons ----------------------------------------------------------------------------------------------
 
+/// The part of the tolerance for the samples of a curve; the rest is for leaving out of those what need not
+/// be. Small: even sampling by halves wastes points, thinning does not.
+constexpr double kSampling = 0.2;
+
 /// Samples one loop in the parameters of the NURBS surface.
 class Sampler {
  public:
   Sampler(const ParamMap& u, const ParamMap& v, const Handle(Geom_BSplineSurface) & surface, double tolerance)
-      : u_(u), v_(v), surface_(surface), tolerance_(tolerance) {
+      : u_(u),
+        v_(v),
+        surface_(surface),
+        sampling_(kSampling * tolerance),
+        thinning_((1 - kSampling) * tolerance) {
     surface->Bounds(u_range_.lo, u_range_.hi, v_range_.lo, v_range_.hi);
   }
 
@@ -155,12 +163,13 @@ class Sampler {
     points_.clear();
     for (const BoundaryEdge& edge : loop) {
       const std::vector<double> ends = breaks(edge);
+      std::vector<Point2> points{at(edge, ends.front())};
       for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
         const Point2 a = at(edge, ends[i]), b = at(edge, ends[i + 1]);
-        add(a);
-        bisect(edge, ends[i], a, ends[i + 1], b, 0);
-        add(b);
+        bisect(edge, ends[i], a, ends[i + 1], b, 0, points);
+        points.push_back(b);
       }
+      for (const Point2 p : thinned(points)) add(p);
     }
     while (points_.size() > 1 && same(points_.front(), points_.back())) points_.pop_back();
     return {points_};
@@ -194,23 +203,51 @@ class Sampler {
     return (to - chord * s).Magnitude();
   }
 
-  void bisect(const BoundaryEdge& edge, double ta, Point2 a, double tb, Point2 b, int depth) {
+  /// Points between a and b so that chords stay within the tolerance of sampling.
+  void bisect(const BoundaryEdge& edge, double ta, Point2 a, double tb, Point2 b, int depth,
+              std::vector<Point2>& points) const {
     constexpr int kMaxDepth = 12;
     double worst = 0;
     for (const double s : {0.25, 0.5, 0.75})
       worst = std::max(worst, deviation(at(edge, ta + s * (tb - ta)), a, b));
     // The negation also ends the recursion where the surface is no number.
-    if (!(worst > tolerance_) || depth == kMaxDepth) return;
+    if (!(worst > sampling_) || depth == kMaxDepth) return;
     const double tm = 0.5 * (ta + tb);
     const Point2 m = at(edge, tm);
-    bisect(edge, ta, a, tm, m, depth + 1);
-    add(m);
-    bisect(edge, tm, m, tb, b, depth + 1);
+    bisect(edge, ta, a, tm, m, depth + 1, points);
+    points.push_back(m);
+    bisect(edge, tm, m, tb, b, depth + 1, points);
+  }
+
+  /// Without the points that the tolerance of thinning can do without (Douglas & Peucker): curves with
+  /// many knots bring many.
+  std::vector<Point2> thinned(const std::vector<Point2>& p) const {
+    std::vector<char> keep(p.size(), 0);
+    keep.front() = keep.back() = 1;
+    std::vector<std::pair<std::size_t, std::size_t>> open{{0, p.size() - 1}};
+    while (!open.empty()) {
+      const auto [a, b] = open.back();
+      open.pop_back();
+      std::size_t farthest = a;
+      double worst = thinning_;
+      for (std::size_t i = a + 1; i < b; ++i) {
+        const double d = deviation(p[i], p[a], p[b]);
+        if (d > worst) worst = d, farthest = i;
+      }
+      if (farthest == a) continue;
+      keep[farthest] = 1;
+      open.insert(open.end(), {{a, farthest}, {farthest, b}});
+    }
+    std::vector<Point2> kept;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (keep[i]) kept.push_back(p[i]);
+    }
+    return kept;
   }
 
   const ParamMap &u_, &v_;
   Handle(Geom_BSplineSurface) surface_;
-  double tolerance_;
+  double sampling_, thinning_;
   Interval u_range_, v_range_;
   std::vector<Point2> points_;
 };
