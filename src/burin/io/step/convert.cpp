@@ -324,14 +324,23 @@ geom::Box3 close_bounds(const NurbsSurface& surface) {
   constexpr std::size_t kMaxPoints = 20000;
   if (surface.points.size() > kMaxPoints) return geom::bounds(surface);
   const Handle(Geom_BSplineSurface) s = to_occt(surface);
-  const auto insert = [](const std::vector<double>& flat, const auto& add) {
+  const auto between = [](const std::vector<double>& flat) {
+    std::vector<double> list;
     for (std::size_t i = 0; i + 1 < flat.size(); ++i) {
       for (int k = 1; k < kParts && flat[i] < flat[i + 1]; ++k)
-        add(flat[i] + (flat[i + 1] - flat[i]) * k / kParts);
+        list.push_back(flat[i] + (flat[i + 1] - flat[i]) * k / kParts);
     }
+    return list;
   };
-  insert(surface.knots_u, [&](double t) { s->InsertUKnot(t, 1, 0); });
-  insert(surface.knots_v, [&](double t) { s->InsertVKnot(t, 1, 0); });
+  const auto insert = [&](const std::vector<double>& list, const auto& into) {
+    TColStd_Array1OfReal knots(1, static_cast<int>(list.size()));
+    TColStd_Array1OfInteger once(1, knots.Upper());
+    once.Init(1);
+    for (int i = 1; i <= knots.Upper(); ++i) knots(i) = list[static_cast<std::size_t>(i) - 1];
+    into(knots, once);
+  };
+  insert(between(surface.knots_u), [&](const auto& k, const auto& m) { s->InsertUKnots(k, m, 0, Standard_False); });
+  insert(between(surface.knots_v), [&](const auto& k, const auto& m) { s->InsertVKnots(k, m, 0, Standard_False); });
   geom::Box3 box;
   for (int j = 1; j <= s->NbVPoles(); ++j) {
     for (int i = 1; i <= s->NbUPoles(); ++i) box.add(point(s->Pole(i, j)));
