@@ -223,6 +223,7 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
   const double target = std::max(std::min(1e-4 * limits_.jerk_mm_s3 * t * t * t, 1e-9), 4 * rounding_);
   constexpr double kRemap = 1e-7;  // relative; above, the chords up to each cell are measured again
   Passage passage;
+  double total_before = 0, left_before = 0;
   for (int i = 0; i < kSettle; ++i) {
     const bool last = i + 1 == kSettle;
     passage = walk(!last);
@@ -232,9 +233,16 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
       for (std::size_t c = 1; c < cells_.size(); ++c) cells_[c].s0 = cells_[c - 1].s1;
       cells_.back().s1 = total_ = total_ + left;
       if (auto made = make(); !made) return made.error();
+      total_before = 0;
     } else {
-      const double scale = (total_ + left) / total_;
-      total_ += left;
+      // Secant: where the curvature changes within a chord, the end moves by more or less than the length.
+      constexpr double kFlattest = -0.2;
+      const double slope = total_before > 0 ? (left - left_before) / (total_ - total_before) : -1;
+      const double step = slope < kFlattest ? -left / slope : left;
+      total_before = total_;
+      left_before = left;
+      const double scale = (total_ + step) / total_;
+      total_ += step;
       for (ProfilePiece& p : profile_) {
         p.s *= scale;
         p.v *= scale;
