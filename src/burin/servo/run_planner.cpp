@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <cstdlib>  // DBG
-#include <cstdio>  // DBG
 
 #include "burin/base/text.h"
 
@@ -183,10 +181,6 @@ RunPlanner::Passage RunPlanner::walk(bool measure_chords) {
       const double next = key(at);
       // A bend smaller than the chord is jumped over: slower there, or the chords do not add up steadily.
       if (next - keys[0] > kSkip * covered + rounding_) mark(keys[0], next, kSkip);
-      if (getenv("DBG2") && next - keys[0] > kSkip * covered + rounding_) {  // DBG
-        auto cc = std::lower_bound(cells_.begin(), cells_.end(), keys[0], [](const Cell& c, double k) { return c.key1 < k; });  // DBG
-        fprintf(stderr, "  skip tick %lld key %.6g adv %.6g cov %.6g cell len %.3g kappa %.3g v %.4g floorstep %.3g slow %.3g T %g eps %g J %g\n", (long long)tick, keys[0], next-keys[0], covered, cc->length, cc->curvature, cell_limit(*cc, aim_, tau_, reserve_).v, safe_speed(limits_)*t, cc->slow, t, limits_.chord_error_mm, limits_.jerk_mm_s3);  // DBG
-      }  // DBG
       if (measure_chords) {
         const double end = tick == ticks_ ? total_ + found.left_over : s;
         for (; cell < cells_.size() && cells_[cell].key1 <= next; ++cell) {
@@ -277,8 +271,8 @@ Result<void> RunPlanner::plan() {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (getenv("DBG")) fprintf(stderr, "run %zu-%zu L %.6g cells %zu tau %.4g r %.2g ticks %lld stretch %.3g worst %.6g left %.3g\n", run_.first, run_.end, run_.length, cells_.size(), tau_, reserve_, (long long)ticks_, stretch_, passage->worst, passage->left_over);  // DBG
-    const bool met = std::abs(passage->left_over) <= kMissed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
+    const bool met =
+        std::abs(passage->left_over) <= kMissed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
     if (passage->worst <= 1 && (met || round >= kSkipRounds)) return {};
     lower();
   }
@@ -291,7 +285,6 @@ Result<void> RunPlanner::slow_down(double factor) {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (getenv("DBG")) fprintf(stderr, "run %zu-%zu L %.6g cells %zu tau %.4g r %.2g ticks %lld stretch %.3g worst %.6g left %.3g\n", run_.first, run_.end, run_.length, cells_.size(), tau_, reserve_, (long long)ticks_, stretch_, passage->worst, passage->left_over);  // DBG
     if (passage->worst <= 1) return {};
     factor = std::clamp(std::sqrt(passage->worst), 1.02, 1.5);
   }
