@@ -18,9 +18,10 @@ constexpr int kSlowRounds = 80;  ///< of that
 constexpr int kSettle = 8;       ///< rounds to meet the end
 /// An arc between two setpoints this much longer than its chord is more than a bend of 2 rad.
 constexpr double kSkip = 1.4;
-/// The end missed by less than this share of the slowest step is taken at once; by more only when slowing at
-/// the bends that were jumped over (kSkipRounds of it) did not help.
-constexpr double kMissed = 1e-3;
+/// The end missed by less than the first share of the slowest step is taken at once; by more only when slowing
+/// at the bends that were jumped over (kSkipRounds of it) did not help, and only when the path was not used up
+/// long before the profile.
+constexpr double kMissed = 1e-3, kEarly = 0.1;
 constexpr int kSkipRounds = 6;
 /// Share of the acceleration and jerk that stays for changes of feed where the path is curved; both others
 /// are tried.
@@ -215,7 +216,8 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
   const double t = limits_.period_s;
   // What the last step adds must not show in the jerk, and the end is met to 1e-8 mm.
   const double target = std::max(std::min(1e-4 * limits_.jerk_mm_s3 * t * t * t, 1e-9), 4 * rounding_);
-  constexpr double kRemap = 1e-7;  // relative; above, the chords up to each cell are measured again
+  // Above these, relative, the chords up to each cell are measured again; below, the speed is scaled.
+  constexpr double kRemap = 1e-7, kScale = 1e-6;
   Passage passage;
   double total_before = 0, left_before = 0;
   for (int i = 0; i < kSettle; ++i) {
@@ -223,7 +225,7 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
     passage = walk(!last);
     const double left = passage.left_over;
     if (std::abs(left) <= target || last) break;
-    if (std::abs(left) > kRemap * total_ && i < kSettle / 2) {
+    if (std::abs(left) > (i < kSettle / 2 ? kRemap : kScale) * total_) {
       for (std::size_t c = 1; c < cells_.size(); ++c) cells_[c].s0 = cells_[c - 1].s1;
       cells_.back().s1 = total_ = total_ + left;
       if (auto made = make(); !made) return made.error();
@@ -249,6 +251,11 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
   return passage;
 }
 
+bool RunPlanner::acceptable(const Passage& passage, double missed, bool both_ways) const {
+  const double room = missed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
+  return passage.worst <= 1 && passage.left_over >= -room && (!both_ways || passage.left_over <= room);
+}
+
 void RunPlanner::lower() {
   for (Cell& c : cells_) {
     if (!(c.hit > 1)) continue;
@@ -271,9 +278,7 @@ Result<void> RunPlanner::plan() {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    const bool met =
-        std::abs(passage->left_over) <= kMissed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
-    if (passage->worst <= 1 && (met || round >= kSkipRounds)) return {};
+    if (acceptable(*passage, round < kSkipRounds ? kMissed : kEarly, round < kSkipRounds)) return {};
     lower();
   }
   return slow_down(1.02);
@@ -285,7 +290,7 @@ Result<void> RunPlanner::slow_down(double factor) {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (passage->worst <= 1) return {};
+    if (acceptable(*passage, kEarly, false)) return {};
     factor = std::clamp(std::sqrt(passage->worst), 1.02, 1.5);
   }
   return Error{ErrorCode::geometry,
