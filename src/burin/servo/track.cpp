@@ -169,7 +169,8 @@ Shape shape_of(const Piece& piece, double x0, double x1) {
 }
 
 /// Appends [x0, x1] of the piece, halved as far as needed.
-void add_parts(Track& track, const Piece& piece, double x0, double x1, double feed, double shortest, int depth) {
+void add_parts(Track& track, const Piece& piece, double x0, double x1, double feed, double shortest,
+               int depth) {
   const Shape shape = shape_of(piece, x0, x1);
   const double length = arc_length(piece, x0, x1);
   const bool smooth = shape.uneven <= kEven && shape.turn <= kTurn;
