@@ -195,7 +195,7 @@ class Front {
   PairFigures figures_;
 };
 
-PairFigures between(const Sheet& sheet, const PassTask& task, const Pass& a, const Pass& b, bool last) {
+PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last) {
   PairFigures f;
   f.scallop_min = kNoOverlap;
   f.last = last;
@@ -242,7 +242,7 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
   }
   if (!pole_hi) {
     Pass border = constant_pass(sheet, task, task.w.hi);
-    if (!r.passes.empty()) r.pairs.push_back(between(sheet, task, r.passes.back(), border, true));
+    if (!r.passes.empty()) r.pairs.push_back(between(sheet, r.passes.back(), border, true));
     r.passes.push_back(std::move(border));
   }
   return r;

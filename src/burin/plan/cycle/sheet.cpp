@@ -80,8 +80,8 @@ Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, do
       w_(surface.domain(other(along))),
       size_t_(typical_length(surface, along)),
       size_w_(typical_length(surface, other(along))),
-      t_knots_(inner_knots(surface.knots(along), surface.degree(along))),
-      w_knots_(inner_knots(surface.knots(other(along)), surface.degree(other(along)))),
+      t_knots_(geom::inner_knots(surface.knots(along), surface.degree(along))),
+      w_knots_(geom::inner_knots(surface.knots(other(along)), surface.degree(other(along)))),
       evaluator_(surface) {
   for (const geom::Knot& k : w_knots_)
     if (k.multiplicity >= surface.degree(other(along))) w_creases_.push_back(k.value);
