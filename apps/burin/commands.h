@@ -9,5 +9,6 @@ class Cli;
 void add_laser(Cli& cli);
 void add_kerf(Cli& cli);
 void add_post(Cli& cli);
+void add_surfaces(Cli& cli);
 
 }  // namespace burin::cli
