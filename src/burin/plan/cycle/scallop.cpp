@@ -25,7 +25,8 @@ bool cusp_point(Point3 b, Vec3 axis, Point3 a, double radius, Vec3 down, Point3&
 }
 
 // The nearest of the creases between two parameters may be nearer than what Gauss-Newton found.
-void try_creases(const Sheet& sheet, Point3 x, double wa, double wb, double t, Contact& best) {
+bool try_creases(const Sheet& sheet, Point3 x, double wa, double wb, double t, Contact& best) {
+  bool nearer = false;
   for (const double crease : sheet.w_creases()) {
     if (!(crease > std::min(wa, wb) && crease < std::max(wa, wb))) continue;
     double tc = t;
@@ -35,24 +36,25 @@ void try_creases(const Sheet& sheet, Point3 x, double wa, double wb, double t, C
         const Vec3 n = best.n;
         best = c;
         best.n = unit(n + c.n);
+        nearer = true;
       }
       const double tt = dot(c.st, c.st);
       if (!(tt > 0)) break;
       tc = std::clamp(tc + dot(x - c.s, c.st) / tt, sheet.t_range().lo, sheet.t_range().hi);
     }
   }
+  return nearer;
 }
 
 double height_of(const Sheet& sheet, Point3 x, double ta, double wa, double tb, double wb, double step) {
   double t = 0.5 * (ta + tb), w = 0.5 * (wa + wb);
   // A thousandth of the step off the foot changes the height by a millionth of the cusp.
   Contact c = sheet.nearest(x, t, w, 1e-3 * step);
-  if (!sheet.w_creases().empty()) try_creases(sheet, x, wa, wb, t, c);
+  const bool crease = !sheet.w_creases().empty() && try_creases(sheet, x, wa, wb, t, c);
   const Vec3 e = x - c.s;
   const double along = dot(e, c.n);
-  // On a smooth surface |e| = |along|; at a crease or border the distance counts.
-  const Vec3 off = e - along * c.n;
-  const double height = norm(off) > 1e-2 * step ? std::copysign(norm(e), along) : along;
+  // On a crease the distance counts; at a border the cusp may stand a little outside, which is no height.
+  const double height = crease ? std::copysign(norm(e), along) : along;
   return height - sheet.stock();
 }
 
