@@ -29,6 +29,7 @@ enum class State {
 struct Node {
   double t = 0, w = 0;
   State state = State::done;
+  bool end = false;  ///< the last one of a stretch
 };
 
 class Front {
@@ -110,10 +111,11 @@ class Front {
       if (i > 0) {
         const Node a = nodes_[i - 1], b = nodes_[i];
         const bool edge = (a.state == State::active) != (b.state == State::active);
-        const bool on_border = a.w >= task_.w.hi && b.w >= task_.w.hi;
-        if (edge && !on_border) {
-          const Node e = a.state == State::active ? meeting(a, b.t) : meeting(b, a.t);
-          if (e.t > a.t && e.t < b.t) out.push_back(e);
+        const bool found = (a.state == State::active ? a : b).end;
+        if (edge && !found) {
+          Node e = a.state == State::active ? meeting(a, b.t) : meeting(b, a.t);
+          e.end = true;
+          if (e.t > a.t && e.t < b.t && e.state == State::active) out.push_back(e);
         }
       }
       out.push_back(nodes_[i]);
@@ -132,7 +134,8 @@ class Front {
       (inside ? in : out) = mid;
       if (std::abs(out - in) < 1e-7 * task_.t.length()) break;
     }
-    return {in, task_.w.hi, State::active};
+    // The path reaches the border there, or turns back before it (then it just ends).
+    return solve(in);
   }
 
   std::vector<Graph> fit() const {
@@ -149,8 +152,6 @@ class Front {
         flush();
         continue;
       }
-      // Two ends on the border with nothing between them belong to different stretches.
-      if (!w.empty() && w.back() >= task_.w.hi && n.w >= task_.w.hi) flush();
       t.push_back(n.t);
       w.push_back(n.w);
     }
