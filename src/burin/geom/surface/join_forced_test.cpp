@@ -11,9 +11,9 @@ namespace {
 using namespace test;
 
 #ifdef NDEBUG
-constexpr int kCases = 40;
+constexpr int kCases = 8;
 #else
-constexpr int kCases = 3;
+constexpr int kCases = 1;
 #endif
 
 /// A base of 4 x 12 control points, and a partial patch to its right whose edge has the control points of
@@ -42,14 +42,15 @@ Fixture fixture(Random& random, int first, int last, double height) {
   return f;
 }
 
-/// Largest distance of random points of any of `from` to the nearest of `to`.
+/// Largest distance of random points (half of them on the edges) of any of `from` to the nearest of `to`.
 double far_off(Random& random, const std::vector<NurbsSurface>& from, const std::vector<NurbsSurface>& to) {
   std::vector<ClosestPointFinder> finders;
   for (const NurbsSurface& s : to) finders.emplace_back(s);
   double most = 0;
   for (const NurbsSurface& s : from) {
     for (int k = 0; k < 400; ++k) {
-      const Point3 p = point(s, at_fraction(s.domain(Direction::u), uniform(random, 0, 1)),
+      const double fu = k % 4 == 0 ? 0 : k % 4 == 1 ? 1 : uniform(random, 0, 1);
+      const Point3 p = point(s, at_fraction(s.domain(Direction::u), fu),
                              at_fraction(s.domain(Direction::v), uniform(random, 0, 1)));
       double nearest = std::numeric_limits<double>::infinity();
       for (const auto& finder : finders) nearest = std::min(nearest, finder.find(p, 1e-7).distance);
@@ -109,7 +110,7 @@ TEST(ForcedJoin, ThreeSurfacesAndATrueDeviation) {
       const double seen = std::max(there, back);
       EXPECT_GT(seen, 0.01);
       EXPECT_GE(c.report.deviation_max_mm, 0.999 * seen);
-      EXPECT_LE(c.report.deviation_max_mm, 1.3 * seen + 0.05);
+      EXPECT_LE(c.report.deviation_max_mm, 1.1 * seen);
     }
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "burin/geom/surface/evaluate.h"
 
@@ -116,23 +117,17 @@ double local_distance(const NurbsSurface& surface, Point3 p, Point2 start) {
   return best;
 }
 
-double distance_by_samples(const NurbsSurface& joined, const Region& region, const NurbsSurface& source,
-                           const Member& map, double negligible_mm) {
-  const std::vector<double> us = samples_in(joined.knots_u, region.u, kSamples);
-  const std::vector<double> vs = samples_in(joined.knots_v, region.v, kSamples);
-  SurfaceEvaluator on_joined(joined), on_source(source);
+double largest_over(const NurbsSurface& surface, const Region& region,
+                    const std::function<double(Point2 at, double most)>& distance_at, double negligible_mm) {
+  const std::vector<double> us = samples_in(surface.knots_u, region.u, kSamples);
+  const std::vector<double> vs = samples_in(surface.knots_v, region.v, kSamples);
   double most = 0;
   Point2 worst{us.front(), vs.front()};
   const auto look = [&](Point2 at) {
-    const Point2 there = patch_parameters(map, at);
-    const Point3 p = on_joined.point(at.x, at.y), q = on_source.point(there.x, there.y);
-    double apart = distance(p, q);
-    if (apart > negligible_mm && apart > most)
-      apart = std::max(local_distance(source, p, there), local_distance(joined, q, at));
-    if (!(apart > most)) return false;
+    const double apart = distance_at(at, most);
+    if (!(apart > most)) return;
     most = apart;
     worst = at;
-    return true;
   };
   for (const double v : vs)
     for (const double u : us) look({u, v});
@@ -148,6 +143,39 @@ double distance_by_samples(const NurbsSurface& joined, const Region& region, con
     }
   }
   return most;
+}
+
+double distance_by_samples(const NurbsSurface& joined, const Region& region, const NurbsSurface& source,
+                           const Member& map, double negligible_mm) {
+  SurfaceEvaluator on_joined(joined), on_source(source);
+  const auto apart = [&](Point2 at, double most) {
+    const Point2 there = patch_parameters(map, at);
+    const Point3 p = on_joined.point(at.x, at.y), q = on_source.point(there.x, there.y);
+    const double bound = distance(p, q);
+    if (bound <= negligible_mm || bound <= most) return bound;
+    return std::max(local_distance(source, p, there), local_distance(joined, q, at));
+  };
+  return largest_over(joined, region, apart, negligible_mm);
+}
+
+double distance_to_parts(const NurbsSurface& whole, const std::vector<NurbsSurface>& parts,
+                         const std::vector<Member>& maps, double negligible_mm) {
+  double most = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto to_whole = [&](Point2 at, double) {
+      return local_distance(whole, point(parts[i], at.x, at.y), patch_parameters(maps[i], at));
+    };
+    most = std::max(most, largest_over(parts[i], {maps[i].u, maps[i].v}, to_whole, negligible_mm));
+  }
+  const auto to_nearest_part = [&](Point2 at, double) {
+    const Point3 p = point(whole, at.x, at.y);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      nearest = std::min(nearest, local_distance(parts[i], p, joined_parameters(maps[i], at)));
+    return nearest;
+  };
+  const Region all{whole.domain(Direction::u), whole.domain(Direction::v)};
+  return std::max(most, largest_over(whole, all, to_nearest_part, negligible_mm));
 }
 
 }  // namespace burin::geom::detail
