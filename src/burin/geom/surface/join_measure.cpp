@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
 
 namespace burin::geom::detail {
@@ -160,22 +161,31 @@ double distance_by_samples(const NurbsSurface& joined, const Region& region, con
 
 double distance_to_parts(const NurbsSurface& whole, const std::vector<NurbsSurface>& parts,
                          const std::vector<Member>& maps, double negligible_mm) {
-  double most = 0;
+  // Newton may end at a place that is near but not nearest: what would raise the maximum is proven.
+  const ClosestPointFinder on_whole(whole);
+  std::vector<ClosestPointFinder> on_parts;
+  for (const NurbsSurface& part : parts) on_parts.emplace_back(part);
+  double largest = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto to_whole = [&](Point2 at, double) {
-      return local_distance(whole, point(parts[i], at.x, at.y), patch_parameters(maps[i], at));
+    const auto to_whole = [&](Point2 at, double most) {
+      const Point3 p = point(parts[i], at.x, at.y);
+      const double local = local_distance(whole, p, patch_parameters(maps[i], at));
+      return local <= std::max(most, negligible_mm) ? local : on_whole.find(p, negligible_mm).distance;
     };
-    most = std::max(most, largest_over(parts[i], {maps[i].u, maps[i].v}, to_whole, negligible_mm));
+    largest = std::max(largest, largest_over(parts[i], {maps[i].u, maps[i].v}, to_whole, negligible_mm));
   }
-  const auto to_nearest_part = [&](Point2 at, double) {
+  const auto to_nearest_part = [&](Point2 at, double most) {
     const Point3 p = point(whole, at.x, at.y);
-    double nearest = std::numeric_limits<double>::infinity();
+    double local = std::numeric_limits<double>::infinity(), proven = local;
     for (std::size_t i = 0; i < parts.size(); ++i)
-      nearest = std::min(nearest, local_distance(parts[i], p, joined_parameters(maps[i], at)));
-    return nearest;
+      local = std::min(local, local_distance(parts[i], p, joined_parameters(maps[i], at)));
+    if (local <= std::max(most, negligible_mm)) return local;
+    for (const ClosestPointFinder& finder : on_parts)
+      proven = std::min(proven, finder.find(p, negligible_mm).distance);
+    return proven;
   };
   const Region all{whole.domain(Direction::u), whole.domain(Direction::v)};
-  return std::max(most, largest_over(whole, all, to_nearest_part, negligible_mm));
+  return std::max(largest, largest_over(whole, all, to_nearest_part, negligible_mm));
 }
 
 }  // namespace burin::geom::detail
