@@ -14,7 +14,7 @@ namespace {
 constexpr int kWeightDecimals = 9, kKnotDecimals = 12;
 constexpr int kDefaultOrder = 4;
 // Knots have a fixed number of decimals: over a shorter domain they would lose digits, so it becomes 0 to 1.
-constexpr double kShortestDomain = 0.1;
+constexpr double kShortestDomain = 0.03;
 // The same for weights: when one is smaller, all are multiplied so that the smallest is 1.
 constexpr double kSmallestWeight = 0.1, kLargestWeight = 1e12;
 constexpr double kLargestKnot = 1e6;  // 12 decimals of it are still exact to the last digit or two

@@ -19,8 +19,8 @@ constexpr double kNotable = 0.02;
 /// Largest turn of the tangent within a cell, rad: the axes' shares change with the direction.
 constexpr double kMaxTurn = 0.3;
 
-/// Largest turn of the path within a chord, rad. Beyond, a chord jumps over bends, and which ones changes with
-/// every change of the profile.
+/// Largest turn of the path within a chord, rad. Beyond, a chord jumps over bends, and which ones changes
+/// with every change of the profile.
 constexpr double kChordTurn = 0.5;
 
 double largest(const Vec3& v) {

@@ -339,8 +339,10 @@ geom::Box3 close_bounds(const NurbsSurface& surface) {
     for (int i = 1; i <= knots.Upper(); ++i) knots(i) = list[static_cast<std::size_t>(i) - 1];
     into(knots, once);
   };
-  insert(between(surface.knots_u), [&](const auto& k, const auto& m) { s->InsertUKnots(k, m, 0, Standard_False); });
-  insert(between(surface.knots_v), [&](const auto& k, const auto& m) { s->InsertVKnots(k, m, 0, Standard_False); });
+  insert(between(surface.knots_u),
+         [&](const auto& k, const auto& m) { s->InsertUKnots(k, m, 0, Standard_False); });
+  insert(between(surface.knots_v),
+         [&](const auto& k, const auto& m) { s->InsertVKnots(k, m, 0, Standard_False); });
   geom::Box3 box;
   for (int j = 1; j <= s->NbVPoles(); ++j) {
     for (int i = 1; i <= s->NbUPoles(); ++i) box.add(point(s->Pole(i, j)));

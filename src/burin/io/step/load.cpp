@@ -7,6 +7,7 @@
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <Interface_InterfaceModel.hxx>
+#include <Interface_ReportEntity.hxx>
 #include <Interface_Static.hxx>
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
@@ -161,6 +162,35 @@ Error damaged(const std::string& what) {
   return {ErrorCode::syntax, what, {}};
 }
 
+/// Whether readers go on to geometry through this entity. Others (units with derived values left out, names,
+/// notes) are often filled sloppily, which does no harm.
+bool carries_shape(const Handle(Standard_Transient) & entity) {
+  const std::string_view type = entity->DynamicType()->Name();
+  if (type.find("Context") != std::string_view::npos) return false;
+  return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("IGES");
+}
+
+/// The first entity of geometry that could not be filled from its values. OpenCASCADE goes on with holes in
+/// it, and reads through null pointers later.
+Result<void> check_entities(const Handle(Interface_InterfaceModel) & model) {
+  if (model.IsNull()) return damaged("holds nothing that can be read (a complete STEP or IGES file)");
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    if (!model->IsErrorEntity(i)) continue;
+    const Handle(Standard_Transient) entity = model->Value(i);
+    if (!carries_shape(entity)) continue;
+    const Handle(Interface_Check) check = model->ReportEntity(i)->Check();
+    constexpr std::string_view kName = "(name)";
+    if (check->NbFails() == 1 && std::string_view(check->CFail(1)).find(kName) != std::string_view::npos)
+      continue;
+    Error error =
+        damaged("is damaged: " + std::string(check->HasFailed() ? check->CFail(1) : "values are missing") +
+                " (a complete STEP or IGES file)");
+    error.where.entity = entity_label(model, entity) + " " + entity->DynamicType()->Name();
+    return error;
+  }
+  return {};
+}
+
 std::string unit_word(std::string name) {
   name = to_lower(trim(name));
   static const std::map<std::string, std::string> kWords{
@@ -190,6 +220,7 @@ Result<Loaded> load_step(std::string_view bytes, Diagnostics& diagnostics) {
   std::istream stream(&buffer);
   if (reader.ReadStream("part", stream) != IFSelect_RetDone)
     return damaged("cannot be read as STEP (a part in ISO 10303-21: AP203, AP214 or AP242)");
+  if (auto fine = check_entities(reader.Model()); !fine) return fine.error();
   reader.TransferRoots();
   Loaded loaded;
   loaded.shape = reader.OneShape();
@@ -209,6 +240,7 @@ Result<Loaded> load_iges(std::string_view bytes, Diagnostics& diagnostics) {
   IGESControl_Reader reader;
   if (reader.ReadFile(file->path().c_str()) != IFSelect_RetDone)
     return damaged("cannot be read as IGES (a file of fixed 80-column lines)");
+  if (auto fine = check_entities(reader.Model()); !fine) return fine.error();
   reader.TransferRoots();
   Loaded loaded;
   loaded.shape = reader.OneShape();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "burin/base/text.h"
+#include "burin/geom/surface/nurbs.h"
 #include "burin/io/step/references.h"
 #include "burin/io/step/scan.h"
 
@@ -177,6 +178,12 @@ class Scanner {
     if (!first || !count || *first < 1 || *count < 0 || *first > lines ||
         *first + std::max<long long>(*count, 1) - 1 > lines)
       return fail("the directory entry points outside of the parameter data", a.number);
+    for (long long k = *first; k < *first + std::max<long long>(*count, 1) && !failed(); ++k) {
+      const Line& p = section('P')[static_cast<std::size_t>(k) - 1];
+      if (parse_integer(trim(p.text.substr(64, 8))) != static_cast<long long>(i) + 1)
+        fail("columns 65 to 72 do not lead back to directory line " + std::to_string(i + 1), p.number);
+    }
+    if (failed()) return;
     const auto list = values(static_cast<std::size_t>(*first) - 1,
                              static_cast<std::size_t>(std::max<long long>(*count, 1)));
     const int line = section('P')[static_cast<std::size_t>(*first) - 1].number;
@@ -185,6 +192,7 @@ class Scanner {
       return fail("the values belong to another entity than directory line " + std::to_string(a.number),
                   line);
     check_counts(*type, *list, line);
+    if (!failed() && (*type == 126 || *type == 128)) check_spline(*list, *type == 128, line);
     if (!failed()) add_references(i / 2, *type, *list, number(a, 6).value_or(0), graph);
   }
 
@@ -239,6 +247,70 @@ class Scanner {
       default:
         return std::nullopt;
     }
+  }
+
+  /// Reals of IGES may have a D for the exponent; a value left out is 0.
+  static std::optional<double> real(const Values& v, std::size_t index) {
+    if (index >= v.size()) return std::nullopt;
+    if (v[index].empty()) return 0.0;
+    std::string text(v[index]);
+    std::replace(text.begin(), text.end(), 'D', 'E');
+    return parse_double(text);
+  }
+
+  /// Values [from, from + count) as numbers, or a message.
+  std::vector<double> reals(const Values& v, std::size_t from, std::size_t count, int line) {
+    std::vector<double> list;
+    for (std::size_t i = from; i < from + count && !failed(); ++i) {
+      const auto value = real(v, i);
+      if (!value)
+        fail("value " + std::to_string(i) + " of entity " + std::string(v[0]) + " is not a number", line);
+      list.push_back(value.value_or(0));
+    }
+    return list;
+  }
+
+  void check_knots(const Values& v, std::size_t from, std::size_t count, int line) {
+    const std::vector<double> knots = reals(v, from, count, line);
+    if (failed()) return;
+    constexpr double kRounding = 1e-9;  // knots that should be equal, written with few digits
+    const double range = knots.back() - knots.front();
+    bool good = range > 0;
+    for (std::size_t i = 1; i < knots.size(); ++i)
+      good = good && knots[i] >= knots[i - 1] - kRounding * range;
+    if (!good) fail("the knots of entity " + std::string(v[0]) + " do not ascend", line);
+  }
+
+  /// Curves 126 and surfaces 128: OpenCASCADE reads on with what is missing.
+  void check_spline(const Values& v, bool surface, int line) {
+    const std::size_t head = surface ? 9 : 6;
+    std::vector<std::size_t> points, degrees;
+    for (std::size_t i = 1; i <= (surface ? 2u : 1u); ++i) {
+      const long long upper = integer(v, i).value_or(-1),
+                      degree = integer(v, i + (surface ? 2 : 1)).value_or(-1);
+      if (degree < 1 || degree > geom::kMaxSurfaceDegree || upper < degree)
+        return fail("entity " + std::string(v[0]) + " has degree " + std::to_string(degree) + " with " +
+                        std::to_string(upper + 1) + " points (degrees 1 to " +
+                        std::to_string(geom::kMaxSurfaceDegree) + ", more points than the degree)",
+                    line);
+      points.push_back(static_cast<std::size_t>(upper) + 1);
+      degrees.push_back(static_cast<std::size_t>(degree));
+    }
+    for (std::size_t i = points.size() + degrees.size() + 1; i <= head; ++i) {
+      const auto flag = integer(v, i);
+      if (!flag || *flag < 0 || *flag > 1)
+        return fail("a flag of entity " + std::string(v[0]) + " is not 0 or 1", line);
+    }
+    std::size_t at = head + 1;
+    for (std::size_t i = 0; i < points.size() && !failed(); ++i) {
+      check_knots(v, at, points[i] + degrees[i] + 1, line);
+      at += points[i] + degrees[i] + 1;
+    }
+    const std::size_t all = surface ? points[0] * points[1] : points[0];
+    for (const double w : reals(v, at, all, line)) {
+      if (!(w > 0)) fail("a weight of entity " + std::string(v[0]) + " is not above 0", line);
+    }
+    reals(v, at + all, 3 * all + (surface ? 4 : 2), line);
   }
 
   void check_counts(long long type, const Values& v, int line) {

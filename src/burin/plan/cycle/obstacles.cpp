@@ -66,7 +66,7 @@ double length_v(const Samples& s) {
 
 std::vector<double> cuts_of(const geom::NurbsSurface& s, Direction d) {
   std::vector<double> cuts{s.domain(d).lo};
-  for (const geom::Knot& k : inner_knots(s.knots(d), s.degree(d))) cuts.push_back(k.value);
+  for (const geom::Knot& k : geom::inner_knots(s.knots(d), s.degree(d))) cuts.push_back(k.value);
   cuts.push_back(s.domain(d).hi);
   return cuts;
 }
