@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kTangentAngle = 1e-6, kCurvatureRatio = 1e-4;  // promised in join.h
 constexpr int kSamples = 9;                                     // per span and direction, promised in join.h
+/// In very large nets fewer: each span is small.
+constexpr std::size_t kManySpans = 40000;
+constexpr int kFewSamples = 3;
 /// Samples of a joint's line per span.
 constexpr int kLineSamples = 5;
 /// Curvature radii beyond this many sizes of the surface are flat.
@@ -120,8 +123,11 @@ double local_distance(const NurbsSurface& surface, Point3 p, Point2 start) {
 
 double largest_over(const NurbsSurface& surface, const Region& region,
                     const std::function<double(Point2 at, double most)>& distance_at, double negligible_mm) {
-  const std::vector<double> us = samples_in(surface.knots_u, region.u, kSamples);
-  const std::vector<double> vs = samples_in(surface.knots_v, region.v, kSamples);
+  const std::size_t spans =
+      spans_in(surface.knots_u, region.u).size() * spans_in(surface.knots_v, region.v).size();
+  const int per_span = spans <= kManySpans ? kSamples : kFewSamples;
+  const std::vector<double> us = samples_in(surface.knots_u, region.u, per_span);
+  const std::vector<double> vs = samples_in(surface.knots_v, region.v, per_span);
   double most = 0;
   Point2 worst{us.front(), vs.front()};
   const auto look = [&](Point2 at) {
