@@ -104,10 +104,9 @@ Result<void> CurveReader::add(const Block& block, const std::array<const Word*, 
     if (!words[i]) continue;
     const double value = words[i]->value * scale_;
     if (!(std::abs(value) <= kMaxCoordinate_mm))
-      return source_.error(
-          ErrorCode::range,
-          word_text(*words[i]) + " beyond " + format_shortest(kMaxCoordinate_mm) + " mm (less)",
-          place_of(block, *words[i]));
+      return source_.error(ErrorCode::range,
+                           word_text(*words[i]) + " beyond " + coordinate_limit() + " (less)",
+                           place_of(block, *words[i]));
     set_component(last_, static_cast<int>(i), value);
   }
   const double weight = words[kWeight] ? words[kWeight]->value : 1.0;

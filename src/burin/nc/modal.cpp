@@ -5,6 +5,7 @@
 
 #include "burin/base/text.h"
 #include "burin/nc/arc.h"
+#include "burin/nc/place.h"
 
 namespace burin::nc {
 namespace {
@@ -50,8 +51,7 @@ double ModalMachine::scale() const {
 Result<double> ModalMachine::length(const Word& word) const {
   const double mm = word.value * scale();
   if (!(std::abs(mm) <= kMaxCoordinate_mm))
-    return error(ErrorCode::range,
-                 std::string(1, word.letter) + " beyond " + format_shortest(kMaxCoordinate_mm) + " mm (less)",
+    return error(ErrorCode::range, std::string(1, word.letter) + " beyond " + coordinate_limit() + " (less)",
                  &word);
   return mm;
 }
@@ -322,8 +322,7 @@ Result<geom::Point3> ModalMachine::target(const std::array<const Word*, 3>& axes
       return error(ErrorCode::unsupported, "an increment from the machine's reference position (G90)", word);
     const double to = *value + (state_.incremental ? component(end, axis) : 0.0);
     if (!(std::abs(to) <= kMaxCoordinate_mm))
-      return error(ErrorCode::range, "a position beyond " + format_shortest(kMaxCoordinate_mm) + " mm (less)",
-                   word);
+      return error(ErrorCode::range, "a position beyond " + coordinate_limit() + " (less)", word);
     set_component(end, axis, to);
     lost_[i] = false;
   }

@@ -11,7 +11,13 @@ namespace burin::nc {
 
 std::string word_text(const Word& word) {
   if (word.letter == 'G' && word.code() >= 0) return code_name('G', word.code());
-  return word.letter + format_shortest(word.value);
+  const std::string shortest = format_shortest(word.value);
+  const bool plain = shortest.find('e') == std::string::npos;
+  return word.letter + (plain ? shortest : format_fixed(word.value, 12));
+}
+
+std::string coordinate_limit() {
+  return format_fixed(kMaxCoordinate_mm, 0) + " mm";
 }
 
 Result<int> integer_word(const Source& source, const Block& block, const Word& word, int lo, int hi,
@@ -28,10 +34,9 @@ Result<double> positive_word(const Source& source, const Block& block, const Wor
                              const std::string& what) {
   const double value = word.value * scale;
   if (!(value > 0 && value <= kMaxCoordinate_mm))
-    return source.error(
-        ErrorCode::range,
-        word_text(word) + ": " + what + " (above 0, at most " + format_shortest(kMaxCoordinate_mm) + " mm)",
-        place_of(block, word));
+    return source.error(ErrorCode::range,
+                        word_text(word) + ": " + what + " (above 0, at most " + coordinate_limit() + ")",
+                        place_of(block, word));
   return value;
 }
 

@@ -34,6 +34,8 @@ inline Place place_of(const Block& block) {
 
 /// "X12.5", "G6.23": a word as it is named in messages.
 std::string word_text(const Word& word);
+/// "10000000 mm"
+std::string coordinate_limit();
 
 /// A whole number from `lo` to `hi`; `what` names it in the message.
 Result<int> integer_word(const Source& source, const Block& block, const Word& word, int lo, int hi,

@@ -153,8 +153,8 @@ Error SurfaceReader::unfinished(Place place, const std::string& what) const {
                              std::to_string(knots_v_) + " of V)",
                          place);
   return source_.error(ErrorCode::syntax,
-                       what + " while " + plural(trims_.missing(), "point") + " of the trim loop in line " +
-                           std::to_string(trims_.open_loop().line) + " are missing (BURIN TRIM u,v ...)",
+                       what + " while the trim loop in line " + std::to_string(trims_.open_loop().line) +
+                           " lacks " + plural(trims_.missing(), "point") + " (BURIN TRIM u,v ...)",
                        place);
 }
 
@@ -199,8 +199,7 @@ Result<void> SurfaceReader::take_point(const Block& block) {
                            place_of(block, word));
     const double value = i < 3 ? word.value * scale_ : word.value;
     if (i < 3 && !(std::abs(value) <= kMaxCoordinate_mm))
-      return source_.error(ErrorCode::range,
-                           word_text(word) + " beyond " + format_shortest(kMaxCoordinate_mm) + " mm (less)",
+      return source_.error(ErrorCode::range, word_text(word) + " beyond " + coordinate_limit() + " (less)",
                            place_of(block, word));
     if (i == 3 && !(value >= kMinWeight && value <= kMaxWeight))
       return source_.error(

@@ -14,7 +14,7 @@ namespace {
 constexpr int kWeightDecimals = 9, kKnotDecimals = 12;
 constexpr int kDefaultOrder = 4;
 // Knots have a fixed number of decimals: over a shorter domain they would lose digits, so it becomes 0 to 1.
-constexpr double kShortestDomain = 0.1;
+constexpr double kShortestDomain = 0.03;
 // The same for weights: when one is smaller, all are multiplied so that the smallest is 1.
 constexpr double kSmallestWeight = 0.1, kLargestWeight = 1e12;
 constexpr double kLargestKnot = 1e6;  // 12 decimals of it are still exact to the last digit or two
@@ -54,8 +54,7 @@ Result<void> check_options(const SurfaceWriteOptions& o) {
   if (o.side_step && !positive(*o.side_step))
     return bad(ErrorCode::usage, "a side step that is not above 0 (above 0, or none)");
   if (!(std::abs(o.safety_z) <= kMaxCoordinate_mm))
-    return bad(ErrorCode::usage,
-               "a safety height beyond " + format_shortest(kMaxCoordinate_mm) + " mm (less)");
+    return bad(ErrorCode::usage, "a safety height beyond " + coordinate_limit() + " (less)");
   for (double value : {o.tool_diameter, o.scallop, o.feed, o.side_step.value_or(1)})
     if (number(value, kWeightDecimals) == "0.")
       return bad(ErrorCode::usage, "a value that vanishes at 9 decimals (more)");
@@ -153,8 +152,7 @@ Result<void> write_points(const geom::NurbsSurface& surface, const Written& writ
       return bad(ErrorCode::range, "weights that differ by more than a factor of 1e12 (less)");
     for (double c : {p.x, p.y, p.z})
       if (!(std::abs(c) <= kMaxCoordinate_mm))
-        return bad(ErrorCode::range,
-                   "a control point beyond " + format_shortest(kMaxCoordinate_mm) + " mm (less)");
+        return bad(ErrorCode::range, "a control point beyond " + coordinate_limit() + " (less)");
     std::string line = words.changed(0, 'X', number(p.x, decimals));
     line += words.changed(1, 'Y', number(p.y, decimals));
     line += words.changed(2, 'Z', number(p.z, decimals));

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "burin/verify/scallop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "burin/geom/surface/closest.h"
+#include "burin/geom/surface/evaluate.h"
+#include "burin/verify/sweep.h"
+
+namespace burin::verify {
+namespace {
+
+using geom::Point3;
+using geom::Vec3;
+
+// Places on the line between two passes at which the height is taken before the ridge is narrowed down.
+constexpr int kAcross = 24;
+// Golden sections around the highest of them: the place of the ridge to 1e-5 of the side step.
+constexpr int kNarrow = 20;
+
+struct Station {
+  Point3 center;
+  geom::SurfacePoint foot;
+};
+
+class Measure {
+ public:
+  Measure(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
+          const ScallopOptions& options)
+      : passes_(passes),
+        options_(options),
+        evaluator_(surface),
+        surface_(surface),
+        finder_(surface),
+        sweep_(segments(passes, options.radius_mm), options.radius_mm) {}
+
+  ScallopReport run() {
+    const double spacing = station_spacing();
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+      const std::vector<Station> from = stations(passes_[i], spacing);
+      for (const Station& s : from) gouge_at(s.foot.u, s.foot.v);
+      if (i + 1 < passes_.size()) report_.ridges.push_back(ridge(from, passes_[i + 1]));
+    }
+    bool any = false;
+    for (std::size_t i = 0; i + 1 < report_.ridges.size(); ++i) {
+      const ScallopReport::Ridge& r = report_.ridges[i];
+      report_.scallop_min_mm = any ? std::min(report_.scallop_min_mm, r.min_mm) : r.min_mm;
+      report_.scallop_max_mm = std::max(report_.scallop_max_mm, r.max_mm);
+      any = true;
+    }
+    return std::move(report_);
+  }
+
+ private:
+  static Point3 center_of(Point3 tip, double radius) { return {tip.x, tip.y, tip.z + radius}; }
+
+  static std::vector<Sweep::Segment> segments(const std::vector<TipPass>& passes, double radius) {
+    std::vector<Sweep::Segment> all;
+    for (const TipPass& pass : passes)
+      for (std::size_t i = 0; i < pass.tips.size(); ++i)
+        all.push_back({center_of(pass.tips[i], radius),
+                       center_of(pass.tips[std::min(i + 1, pass.tips.size() - 1)], radius)});
+    return all;
+  }
+
+  double station_spacing() const {
+    double length = 0;
+    for (const TipPass& pass : passes_)
+      for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i)
+        length += distance(pass.tips[i], pass.tips[i + 1]);
+    const double wanted = options_.spacing_mm > 0 ? options_.spacing_mm : 0.25 * options_.radius_mm;
+    const double least = length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
+    return std::max(wanted, least);
+  }
+
+  Station station(Point3 tip) const {
+    const Point3 center = center_of(tip, options_.radius_mm);
+    return {center, finder_.find(center, 1e-6)};
+  }
+
+  /// Evenly along the pass, both ends among them.
+  std::vector<Station> stations(const TipPass& pass, double spacing) const {
+    std::vector<Station> out;
+    if (pass.tips.empty()) return out;
+    out.push_back(station(pass.tips.front()));
+    double left = spacing;
+    for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i) {
+      const double length = distance(pass.tips[i], pass.tips[i + 1]);
+      double at = 0;
+      while (length - at >= left) {
+        at += left;
+        out.push_back(station(lerp(pass.tips[i], pass.tips[i + 1], at / length)));
+        left = spacing;
+      }
+      left -= length - at;
+    }
+    out.push_back(station(pass.tips.back()));
+    return out;
+  }
+
+  Point3 nearest_on(const TipPass& pass, Point3 center) const {
+    Point3 best = center_of(pass.tips.front(), options_.radius_mm);
+    double least = distance(best, center);
+    for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i) {
+      const Point3 a = center_of(pass.tips[i], options_.radius_mm);
+      const Vec3 d = center_of(pass.tips[i + 1], options_.radius_mm) - a;
+      const double l2 = dot(d, d);
+      const Point3 p = a + (l2 > 0 ? std::clamp(dot(center - a, d) / l2, 0.0, 1.0) : 0.0) * d;
+      if (distance(p, center) < least) least = distance(p, center), best = p;
+    }
+    return best;
+  }
+
+  /// Height of what is left over the surface at (u, v): negative where it was cut too deep.
+  double height(double u, double v) {
+    ++report_.samples;
+    const double side = options_.normal_reversed ? -1 : 1;
+    const Vec3 n = side * geom::normal(surface_, u, v);
+    const Point3 q = evaluator_.point(u, v) + options_.stock_mm * n;
+    const double reach = 2 * options_.radius_mm;
+    const auto h = sweep_.entry(q, n, -reach, reach);
+    return h ? *h : reach;
+  }
+
+  void gouge_at(double u, double v) {
+    const double h = height(u, v);
+    if (-h > report_.gouge_max_mm) {
+      report_.gouge_max_mm = -h;
+      report_.gouge_at = evaluator_.point(u, v);
+    }
+  }
+
+  ScallopReport::Ridge ridge(const std::vector<Station>& from, const TipPass& to) {
+    ScallopReport::Ridge ridge{std::numeric_limits<double>::infinity(), 0};
+    if (to.tips.empty()) return ridge;
+    for (const Station& a : from) {
+      const geom::SurfacePoint b = finder_.find(nearest_on(to, a.center), 1e-6);
+      const double h = highest(a.foot, b);
+      ridge.min_mm = std::min(ridge.min_mm, h);
+      ridge.max_mm = std::max(ridge.max_mm, h);
+    }
+    return ridge;
+  }
+
+  /// The highest place on the line between two feet (straight in the parameters).
+  double highest(const geom::SurfacePoint& a, const geom::SurfacePoint& b) {
+    const auto at = [&](double x) { return height(a.u + x * (b.u - a.u), a.v + x * (b.v - a.v)); };
+    int best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= kAcross; ++k) {
+      const double h = at(double(k) / kAcross);
+      if (h > most) most = h, best = k;
+    }
+    double lo = std::max(0, best - 1) / double(kAcross), hi = std::min(kAcross, best + 1) / double(kAcross);
+    constexpr double kGolden = 0.6180339887498949;
+    double x1 = hi - kGolden * (hi - lo), x2 = lo + kGolden * (hi - lo);
+    double h1 = at(x1), h2 = at(x2);
+    for (int k = 0; k < kNarrow; ++k) {
+      if (h1 > h2) {
+        hi = x2, x2 = x1, h2 = h1;
+        h1 = at(x1 = hi - kGolden * (hi - lo));
+      } else {
+        lo = x1, x1 = x2, h1 = h2;
+        h2 = at(x2 = lo + kGolden * (hi - lo));
+      }
+    }
+    return std::max({most, h1, h2});
+  }
+
+  const std::vector<TipPass>& passes_;
+  const ScallopOptions& options_;
+  geom::SurfaceEvaluator evaluator_;
+  const geom::NurbsSurface& surface_;
+  geom::ClosestPointFinder finder_;
+  Sweep sweep_;
+  ScallopReport report_;
+};
+
+}  // namespace
+
+ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
+                              const ScallopOptions& options) {
+  return Measure(surface, passes, options).run();
+}
+
+}  // namespace burin::verify
