@@ -55,10 +55,9 @@ TEST(Exact, RevolvedArcIsASphere) {
       const Point3 want{7 + r * std::cos(b) * std::cos(a), r * std::cos(b) * std::sin(a), r * std::sin(b)};
       EXPECT_LT(distance(test::evaluate(s.surface, s.u(a), s.v(b)), want), 1e-12 * r);
     }
-    // Poles are one point exactly.
+    // Poles are one point, up to the rounding of the weights.
     for (int k = 0; k < s.surface.count_u; ++k) {
-      EXPECT_EQ(project(s.surface.at(k, s.surface.count_v - 1)),
-                project(s.surface.at(0, s.surface.count_v - 1)));
+      EXPECT_LT(distance(project(s.surface.at(k, s.surface.count_v - 1)), {7, 0, r}), 1e-14 * r);
     }
   }
 }

@@ -4,14 +4,15 @@
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
-#include <BRepBuilderAPI_Transform.hxx>
+#include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
-#include <GC_MakeArcOfCircle.hxx>
+#include <Geom2d_Line.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_OffsetSurface.hxx>
+#include <Geom_SphericalSurface.hxx>
 #include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <Geom_SurfaceOfRevolution.hxx>
 #include <TColStd_Array1OfInteger.hxx>
@@ -23,6 +24,7 @@
 #include <gp_Pln.hxx>
 #include <gp_Sphere.hxx>
 #include <gp_Torus.hxx>
+#include <gp_Vec2d.hxx>
 
 #include <functional>
 
@@ -118,14 +120,15 @@ TEST(Faces, AnalyticOnesAreExactThroughStepAndIges) {
       if (!iges) {
         EXPECT_EQ(face.kind, sheet.kind);
       }
-      EXPECT_FALSE(face.trimmed);
+      // Planes change their axes on the way through IGES.
+      EXPECT_EQ(face.trimmed, iges && sheet.kind == std::string("plane"));
       EXPECT_TRUE(geom::validate(face.surface));
       double worst = 0;
       for_points(face, [&](Point3 p) { worst = std::max(worst, std::abs(sheet.off(p))); });
       EXPECT_LT(worst, iges ? 1e-6 : 1e-9);  // IGES is written with fewer digits
-      auto mesh = mesh_cad(text, {}, 0.002, 0.05, diagnostics);
+      auto mesh = mesh_cad(text, {}, 0.02, 0.15, diagnostics);
       ASSERT_TRUE(mesh);
-      EXPECT_NEAR(mesh_area(*mesh), sheet.area, 2e-3 * sheet.area);
+      EXPECT_NEAR(mesh_area(*mesh), sheet.area, 5e-3 * sheet.area);
       EXPECT_TRUE(diagnostics.empty());
     }
   }
@@ -233,24 +236,23 @@ TEST(Faces, HolesRunClockwiseWithinTheTolerance) {
     }
     EXPECT_LE(worst, tolerance * 1.0001);
     // Not many more points than the tolerance asks for: half angle acos(1 - tolerance / radius).
-    EXPECT_LT(static_cast<double>(hole.size()), 1.6 * geom::kPi / std::acos(1 - tolerance / 12) + 4);
+    EXPECT_LT(static_cast<double>(hole.size()), 1.4 * geom::kPi / std::acos(1 - tolerance / 12) + 4);
   }
 }
 
 TEST(Faces, TheBaseSurfaceDoesNotComeAlong) {
-  // A small triangle on a huge sphere.
-  const gp_Sphere sphere(gp_Ax3(), 1000);
+  // A small triangle on a huge sphere, its sides straight in the parameters.
+  const Handle(Geom_Surface) sphere = new Geom_SphericalSurface(gp_Ax3(), 1000);
+  const gp_Pnt2d corners[] = {gp_Pnt2d(0.3, 0.1), gp_Pnt2d(0.31, 0.1), gp_Pnt2d(0.3, 0.12)};
   BRepBuilderAPI_MakeWire wire;
-  const gp_Pnt a(1000, 0, 0), b(1000 * std::cos(0.01), 1000 * std::sin(0.01), 0),
-      c(1000 * std::cos(0.02), 0, 1000 * std::sin(0.02));
-  const auto great_arc = [](const gp_Pnt& p, const gp_Pnt& q) {
-    const gp_Dir axis(gp_Vec(gp_Pnt(), p).Crossed(gp_Vec(gp_Pnt(), q)));
-    return BRepBuilderAPI_MakeEdge(gp_Circ(gp_Ax2(gp_Pnt(), axis), 1000), p, q).Edge();
-  };
-  wire.Add(great_arc(a, b));
-  wire.Add(great_arc(b, c));
-  wire.Add(great_arc(c, a));
+  for (int i = 0; i < 3; ++i) {
+    const gp_Pnt2d from = corners[i], to = corners[(i + 1) % 3];
+    const Handle(Geom2d_Curve) side = new Geom2d_Line(from, gp_Dir2d(gp_Vec2d(from, to)));
+    wire.Add(BRepBuilderAPI_MakeEdge(side, sphere, 0, from.Distance(to)).Edge());
+  }
+  ASSERT_TRUE(wire.IsDone());
   const TopoDS_Face face = BRepBuilderAPI_MakeFace(sphere, wire.Wire()).Face();
+  BRepLib::BuildCurves3d(face);
   Diagnostics diagnostics;
   const CadModel model = read(step::test::step_text(face), diagnostics);
   ASSERT_EQ(model.faces.size(), 1u);
@@ -259,7 +261,8 @@ TEST(Faces, TheBaseSurfaceDoesNotComeAlong) {
   for_points(model.faces[0], [&](Point3 p) { EXPECT_NEAR(norm(p - Point3{}), 1000, 1e-9); });
   const std::vector<Point2>& loop = model.faces[0].loops.at(0).points;
   EXPECT_GT(signed_area(loop), 0);
-  for (const gp_Pnt& corner : {a, b, c}) {
+  for (const gp_Pnt2d& uv : corners) {
+    const gp_Pnt corner = sphere->Value(uv.X(), uv.Y());
     double nearest = 1e9;
     for (const Point2 q : loop) {
       const Point3 p = evaluate(model.faces[0].surface, q.x, q.y);
@@ -365,6 +368,32 @@ TEST(Faces, PeriodicSplinesAreCutOpenWhereTheFaceLies) {
       const gp_Pnt q = tube->Value(u, 0.6);
       EXPECT_LT(distance(p, {q.X(), q.Y(), q.Z()}), 1e-9) << u;
     }
+  }
+}
+
+TEST(Faces, UnclampedSplinesAreClamped) {
+  TColgp_Array2OfPnt poles(1, 6, 1, 2);
+  for (int i = 1; i <= 6; ++i) {
+    for (int j = 1; j <= 2; ++j) poles(i, j) = gp_Pnt(2.0 * i, 9.0 * j, i % 2);
+  }
+  TColStd_Array1OfReal ku(1, 10), kv(1, 2);
+  TColStd_Array1OfInteger mu(1, 10), mv(1, 2);
+  for (int i = 1; i <= 10; ++i) ku(i) = i, mu(i) = 1;
+  kv(1) = 0;
+  kv(2) = 1;
+  mv(1) = mv(2) = 2;
+  const Handle(Geom_BSplineSurface) open = new Geom_BSplineSurface(poles, ku, kv, mu, mv, 3, 1);
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(open, 1e-7).Face();
+  Diagnostics diagnostics;
+  const CadModel model = read(step::test::step_text(face), diagnostics);
+  ASSERT_EQ(model.faces.size(), 1u);
+  const geom::NurbsSurface& s = model.faces[0].surface;
+  ASSERT_TRUE(geom::validate(s)) << geom::validate(s).error().message;
+  EXPECT_FALSE(model.faces[0].trimmed);
+  for (int i = 0; i <= 12; ++i) {
+    const Point3 p = evaluate(s, 4 + 0.25 * i, 0.3);
+    const gp_Pnt q = open->Value(4 + 0.25 * i, 0.3);
+    EXPECT_LT(distance(p, {q.X(), q.Y(), q.Z()}), 1e-9);
   }
 }
 
