@@ -223,7 +223,7 @@ TEST(BadInput, HugeCoordinatesCostTheFaceOnly) {
   ASSERT_TRUE(model) << model.error().to_string();
   EXPECT_EQ(model->faces.size(), 1u);
   ASSERT_EQ(diagnostics.count("face_left_out"), 1u);
-  EXPECT_NE(diagnostics.warnings()[0].message.find("10 km"), std::string::npos);
+  EXPECT_NE(diagnostics.warnings()[0].message.find("10 km"), std::string::npos) << diagnostics.warnings()[0].message;
   EXPECT_FALSE(diagnostics.warnings()[0].where.entity.empty());
 }
 
