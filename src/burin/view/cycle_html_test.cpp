@@ -119,7 +119,7 @@ TEST(TrackLabels, EverySetpointIsTheMotionItCameFrom) {
     if (l.kind != cover.truth[i] && !border) ++wrong;
     if (cover.truth[i] == TrackKind::cut) {
       EXPECT_EQ(l.kind, TrackKind::cut);
-      EXPECT_EQ(l.group, cover.setpoints[i].surface);
+      EXPECT_EQ(l.group, i < cover.setpoints.size() / 2 ? 0 : 1);
       EXPECT_EQ(l.surface, 0);
       EXPECT_EQ(l.pass, cover.setpoints[i].pass);
     }
@@ -127,17 +127,27 @@ TEST(TrackLabels, EverySetpointIsTheMotionItCameFrom) {
   EXPECT_EQ(wrong, 0u);
 }
 
-TEST(TrackLabels, SurfacesMayCountInTheirGroup) {
-  Cover cover(6);
-  std::vector<int> group;
-  for (auto& s : cover.setpoints) {
-    group.push_back(s.surface);
-    if (s.surface == 1) s.surface = 0;
-  }
-  const TrackLabels labels = label_setpoints(cover.picture());
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    if (group[i] < 0) continue;
-    ASSERT_EQ(labels.labels[labels.of_sample[i]].group, group[i]) << i;
+/// Three machinings of different composites, or of one: numbers over the program and in the group.
+TEST(TrackLabels, SurfacesCountOverTheProgramOrInTheirGroup) {
+  const Cover cover(6);
+  geom::Composite other = cover.composite;
+  CyclePicture picture = cover.picture();
+  picture.groups.push_back(picture.groups[0]);
+  picture.groups[2].composite = &other;
+  const std::size_t n = cover.setpoints.size();
+  for (const int number : {0, 1}) {
+    std::vector<servo::Setpoint> setpoints = cover.setpoints;
+    for (std::size_t i = 0; i < n / 2; ++i) {
+      setpoints.push_back(cover.setpoints[i]);
+      if (setpoints.back().surface == 0) setpoints.back().surface = number;
+    }
+    picture.setpoints = &setpoints;
+    const TrackLabels labels = label_setpoints(picture);
+    for (std::size_t i = 0; i < setpoints.size(); ++i) {
+      if (setpoints[i].pass < 0) continue;
+      ASSERT_EQ(labels.labels[labels.of_sample[i]].group, i < n / 2 ? 0 : i < n ? 1 : 2) << i;
+      ASSERT_EQ(labels.labels[labels.of_sample[i]].surface, 0);
+    }
   }
 }
 
