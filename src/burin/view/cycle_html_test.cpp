@@ -262,6 +262,29 @@ TEST(Track, LiftIsTheHeightAboveWhereTheSurfaceWouldHaveTheTip) {
   EXPECT_NEAR(track.lift_max, sample::kBump, 0.01);
 }
 
+TEST(Track, TheBallTouchesTheSurface) {
+  const Cover cover(12);
+  const Track track = make_track(cover.picture());
+  std::size_t cuts = 0;
+  for (std::size_t r = 0; r < track.runs.size(); ++r) {
+    const TrackRun& run = track.runs[r];
+    const std::size_t end = r + 1 < track.runs.size() ? track.runs[r + 1].first : track.points.size();
+    for (std::size_t i = run.first; i < end; ++i) {
+      const TrackPoint& p = track.points[i];
+      if (run.label.kind != TrackKind::cut) {
+        EXPECT_EQ(p.normal, (geom::Vec3{0, 0, 1}));
+        continue;
+      }
+      if (run.label.lift_max > 0) continue;
+      // The sample's u, v are the place of the contact.
+      const geom::Point3 c = p.p + sample::kRadius * (geom::Vec3{0, 0, 1} - p.normal);
+      EXPECT_NEAR(c.z, sample::height(c.x - 110 * run.label.group, c.y), 0.02);
+      ++cuts;
+    }
+  }
+  EXPECT_GT(cuts, 100u);
+}
+
 TEST(Track, WithoutSetpointsTheMotionsAreDrawn) {
   const Cover cover(6);
   CyclePicture picture = cover.picture();
