@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "burin/servo/cursor.h"
 #include "burin/servo/plan.h"
 
 namespace burin::servo {
@@ -18,8 +19,8 @@ struct Setpoint {
 };
 
 enum class Status : std::uint8_t {
-  running,
-  done,  ///< at rest at the end; the setpoint repeats the last position
+  running,  ///< the first `setpoints` calls
+  done,     ///< afterwards: at rest at the end; the setpoint repeats the last one
 };
 
 class Interpolator {
@@ -29,14 +30,17 @@ class Interpolator {
   /// Fills `out` for the present period and moves on by one. The first call gives the start at t = 0.
   Status tick(Setpoint& out) noexcept;
   void restart() noexcept;
+  /// Where the last setpoint lies; at a stop the start of what follows.
+  const Cursor& place() const noexcept { return at_; }
 
  private:
+  void fill(Setpoint& out, double speed) const noexcept;
+
   const Plan* plan_;
-  std::size_t run_ = 0, piece_ = 0, profile_ = 0;
+  std::size_t run_ = 0, profile_ = 0;
   std::int64_t tick_ = 0;
-  double x_ = 0;  ///< place in the piece
-  double s_ = 0;  ///< chords travelled in this run
-  double px_ = 0, py_ = 0, pz_ = 0;
+  double travelled_ = 0;  ///< chords, in this run
+  Cursor at_;
 };
 
 }  // namespace burin::servo

@@ -36,10 +36,11 @@ struct Stretch {
 };
 
 /// Polynomial piece for the tick: position x, y, z and the parameters u, v as polynomials of degree 5 in
-/// x = (t - t0) / h in [0, 1].
+/// x = (t - t0) / (t1 - t0) in [0, 1].
 struct Piece {
   double c[5][6];
-  double h = 1;
+  double end[3];      ///< position at x = 1: where the next piece starts
+  double start = 0;   ///< arc length from the start of its run, mm
   double length = 0;  ///< arc length, mm
   std::int32_t surface = -1, pass = -1;
   bool has_uv = false;
@@ -47,21 +48,22 @@ struct Piece {
 };
 
 /// Part of the feed profile of constant jerk: from `time` on, s = s0 + v0 d + a0 d^2/2 + j d^3/6, d = t -
-/// time.
+/// time; time counts from the start of the run.
 struct ProfilePiece {
   double time = 0, s = 0, v = 0, a = 0, j = 0;
 };
 
 /// What the tick needs. `profile` counts s in chords travelled (see docs/servo.md), piecewise constant jerk,
-/// from rest at 0 to rest at the end; runs between stops are separate.
+/// from rest at 0 to rest at the end; runs between stops are separate. Each starts and ends with a setpoint,
+/// so that every corner is one.
 struct Plan {
   Limits limits;
   std::vector<Piece> pieces;
   struct Run {
     std::size_t first_piece = 0, end_piece = 0;
     std::size_t first_profile = 0, end_profile = 0;
-    double start_time = 0, end_time = 0;
-    double length = 0;  ///< of its chords
+    std::int64_t first_tick = 0, end_tick = 0;  ///< setpoints at its start and its end
+    double length = 0;                          ///< of its chords
   };
   std::vector<Run> runs;
   std::vector<ProfilePiece> profile;
@@ -69,6 +71,10 @@ struct Plan {
       0;  ///< how many ticks give a setpoint: 0 (at rest at the start) .. at rest at the end
   double duration_s = 0;
 };
+
+/// Coordinates that are accepted: within +-1e7 mm. Largest number of setpoints of a plan.
+inline constexpr double kMaxCoordinate = 1e7;
+inline constexpr std::int64_t kMaxSetpoints = 1'000'000'000;
 
 /// Errors (usage, geometry): limits not positive, a stretch without nodes or with a gap before it, a number
 /// that is not finite, a profile of more than 1e9 setpoints. Every plan is run through the tick once before

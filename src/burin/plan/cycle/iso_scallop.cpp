@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// I2: the next path w(t) is where the cusp against the path before is S everywhere (or the side step M).
+#include <algorithm>
+#include <cmath>
+
+#include "burin/plan/cycle/passes.h"
+
+namespace burin::cycle {
+namespace {
+
+// Use of the limits that is aimed at (height 0.991 S) and how far the spline between nodes may be off
+// (height 0.6 %): never above S, and within 2 % of it with room for what a check measures differently.
+constexpr double kAim = 0.9955;
+constexpr double kOff = 0.003;
+// Solved this closely, so that the slopes of the spline do not feel what is left.
+constexpr double kSolved = 3e-6;
+// Nodes are at least this part of a step apart: what is finer is no feature of the scallop.
+constexpr double kFinest = 0.08;
+constexpr int kSamples = 32;
+constexpr int kRounds = 8;
+constexpr std::size_t kMostNodes = 4000;
+
+enum class State {
+  active,  ///< the path passes here
+  capped,  ///< within reach of the border w1, which gets the last path
+  done,    ///< the path before has reached the border
+};
+
+struct Node {
+  double t = 0, w = 0;
+  State state = State::done;
+  bool end = false;  ///< the last one of a stretch
+};
+
+class Front {
+ public:
+  Front(const Sheet& sheet, const PassTask& task, const Before& before, const Pass* previous, bool pole_hi)
+      : sheet_(sheet),
+        task_(task),
+        before_(before),
+        previous_(previous),
+        pole_hi_(pole_hi),
+        least_(task.w.length() / static_cast<double>(task.max_paths)) {}
+
+  /// The next path; no graphs when all of the border is reached.
+  std::vector<Graph> advance(const std::vector<double>& places, PairFigures& figures) {
+    for (const double t : places) nodes_.push_back(solve(t));
+    std::vector<Graph> graphs;
+    for (int round = 0;; ++round) {
+      close_ends();
+      graphs = fit();
+      if (round == kRounds || nodes_.size() > kMostNodes) break;
+      if (!refine(graphs)) break;
+    }
+    figures = figures_;
+    return graphs;
+  }
+
+ private:
+  double use(double t, double w, std::optional<double> slope) {
+    last_ = cusp(sheet_, before_, t, w, slope);
+    return use_of_limits(task_, last_);
+  }
+
+  double start_w(double t) const { return previous_ == nullptr ? task_.w.lo : previous_->w_at(t); }
+
+  Node solve(double t) {
+    if (previous_ != nullptr && !previous_->covers(t)) return {t, task_.w.hi, State::done};
+    const double w0 = start_w(t);
+    if (!(w0 < task_.w.hi)) return {t, task_.w.hi, State::done};
+    double ok = 0, bad = -1;  // steps known to keep and to break the limits
+    double step = guess_ > 0 ? guess_ : first_step(sheet_, task_, t, w0);
+    double best_step = step, best_off = 1e300, last_step = 0, last_use = 0;
+    constexpr int kIterations = 40;
+    for (int i = 0; i < kIterations; ++i) {
+      const bool border = step >= task_.w.hi - w0;
+      if (border) step = task_.w.hi - w0;
+      const double u = use(t, border ? task_.w.hi : w0 + step, std::nullopt);
+      if (border && u <= kAim + kOff) return at_border(t, w0);
+      if (std::abs(u - kAim) < best_off) best_off = std::abs(u - kAim), best_step = step;
+      if (best_off < kSolved) break;
+      (u <= kAim ? ok : bad) = step;
+      // Secant; the first time through (0, 0), as the use grows nearly linearly.
+      const double rise = (u - last_use) / (step - last_step);
+      double next = rise > 0 ? std::clamp(step + (kAim - u) / rise, 0.1 * step, 4 * step) : 4 * step;
+      last_step = step;
+      last_use = u;
+      if (bad >= 0 && !(next > ok && next < bad)) next = 0.5 * (ok + bad);
+      if (bad < 0 && next <= ok) next = 2 * ok;
+      step = next;
+      if (bad >= 0 && bad - ok < 1e-9 * bad) break;
+    }
+    if (best_off > kOff && bad >= 0) best_step = std::max(ok, least_);
+    best_step = std::max(best_step, least_);
+    guess_ = best_step;
+    return {t, std::min(w0 + best_step, task_.w.hi), State::active};
+  }
+
+  // Within one step of the border. A border that is a point is covered from half a step away.
+  Node at_border(double t, double w0) {
+    if (!pole_hi_) return {t, task_.w.hi, State::capped};
+    const double h = height_at(sheet_, t, task_.w.hi, sheet_.contact(t, w0).c);
+    if (previous_ != nullptr && h <= task_.scallop) return {t, task_.w.hi, State::capped};
+    return {t, 0.5 * (w0 + task_.w.hi), State::active};
+  }
+
+  // Between an active and a capped neighbour lies the place where the path meets the border.
+  void close_ends() {
+    std::vector<Node> out;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (i > 0) {
+        const Node a = nodes_[i - 1], b = nodes_[i];
+        const bool edge = (a.state == State::active) != (b.state == State::active);
+        const bool found = (a.state == State::active ? a : b).end;
+        if (edge && !found) {
+          Node e = a.state == State::active ? meeting(a, b.t) : meeting(b, a.t);
+          e.end = true;
+          if (e.t > a.t && e.t < b.t && e.state == State::active) out.push_back(e);
+        }
+      }
+      out.push_back(nodes_[i]);
+    }
+    nodes_ = std::move(out);
+  }
+
+  Node meeting(const Node& active, double capped_t) {
+    double in = active.t, out = capped_t;
+    constexpr int kHalvings = 40;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double mid = 0.5 * (in + out);
+      if (!(std::min(in, out) < mid && mid < std::max(in, out))) break;
+      const bool covered = previous_ == nullptr || previous_->covers(mid);
+      const bool inside = covered && start_w(mid) < task_.w.hi && use(mid, task_.w.hi, std::nullopt) > kAim + kOff;
+      (inside ? in : out) = mid;
+      if (std::abs(out - in) < 1e-7 * task_.t.length()) break;
+    }
+    // The path reaches the border there, or turns back before it (then it just ends).
+    return solve(in);
+  }
+
+  std::vector<Graph> fit() const {
+    std::vector<Graph> graphs;
+    std::vector<double> t, w;
+    const auto flush = [&] {
+      if (t.size() >= 2) graphs.push_back(spline(t, w));
+      t.clear();
+      w.clear();
+    };
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Node& n = nodes_[i];
+      if (n.state != State::active) {
+        flush();
+        continue;
+      }
+      t.push_back(n.t);
+      w.push_back(n.w);
+    }
+    flush();
+    return graphs;
+  }
+
+  // Nodes between those where the spline leaves the wanted use of the limits.
+  bool refine(const std::vector<Graph>& graphs) {
+    figures_ = {};
+    figures_.scallop_min = kNoOverlap;
+    std::vector<double> wanted;
+    for (const Graph& g : graphs)
+      for (std::size_t i = 0; i + 1 < g.t.size(); ++i) {
+        const double t = 0.5 * (g.t[i] + g.t[i + 1]);
+        const UvPoint p = g.at(t);
+        const double u = use(t, std::min(p.w, task_.w.hi), p.w1);
+        note();
+        const Contact c = sheet_.contact(t, std::min(p.w, task_.w.hi));
+        const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
+        if (!(apart > kFinest * last_.side_step)) continue;
+        const bool half_of_pole = pole_hi_ && u < kAim;
+        if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(t);
+      }
+    if (wanted.empty()) return false;
+    std::vector<Node> more;
+    for (const double t : wanted) more.push_back(solve(t));
+    std::vector<Node> all;
+    std::merge(nodes_.begin(), nodes_.end(), more.begin(), more.end(), std::back_inserter(all),
+               [](const Node& a, const Node& b) { return a.t < b.t; });
+    nodes_ = std::move(all);
+    return true;
+  }
+
+  void note() {
+    figures_.scallop_min = std::min(figures_.scallop_min, last_.height);
+    figures_.scallop_max = std::max(figures_.scallop_max, last_.height);
+    figures_.side_step_max = std::max(figures_.side_step_max, last_.side_step);
+    if (task_.side_step && last_.side_step > 0.9 * *task_.side_step) figures_.side_step_binds = true;
+  }
+
+  const Sheet& sheet_;
+  const PassTask& task_;
+  const Before& before_;
+  const Pass* previous_;
+  bool pole_hi_;
+  double least_;
+  double guess_ = 0;
+  Cusp last_;
+  std::vector<Node> nodes_;
+  PairFigures figures_;
+};
+
+PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last) {
+  PairFigures f;
+  f.scallop_min = kNoOverlap;
+  f.last = last;
+  const Before before(a, sheet.radius());
+  for (const Graph& g : b.graphs)
+    for (const double t : samples_along(sheet, {g.lo(), g.hi()}, 24)) {
+      if (!a.covers(t)) continue;
+      const UvPoint p = g.at(t);
+      const Cusp c = cusp(sheet, before, t, p.w, p.w1);
+      f.scallop_min = std::min(f.scallop_min, c.height);
+      f.scallop_max = std::max(f.scallop_max, c.height);
+      f.side_step_max = std::max(f.side_step_max, c.side_step);
+    }
+  return f;
+}
+
+}  // namespace
+
+Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
+  Passes r;
+  const std::vector<double> places = samples_along(sheet, task.t, kSamples);
+  const bool pole_lo = collapsed(sheet, task.t, task.w.lo), pole_hi = collapsed(sheet, task.t, task.w.hi);
+  std::size_t nodes = 0;
+  if (!pole_lo) r.passes.push_back(constant_pass(sheet, task, task.w.lo));
+  const double guess = first_step(sheet, task, 0.5 * (task.t.lo + task.t.hi), task.w.lo);
+  if (task.w.length() / guess > 16.0 * static_cast<double>(task.max_paths)) return too_many_paths(task);
+  for (;;) {
+    const Pass* previous = r.passes.empty() ? nullptr : &r.passes.back();
+    const Before before =
+        previous == nullptr ? Before(task.t.lo, task.w.lo) : Before(*previous, sheet.radius());
+    PairFigures figures;
+    Pass next;
+    next.graphs = Front(sheet, task, before, previous, pole_hi).advance(places, figures);
+    if (next.graphs.empty()) break;
+    if (r.passes.size() >= task.max_paths) return too_many_paths(task);
+    for (const Graph& g : next.graphs) {
+      Track part = build_track(sheet, g, task.path_mm);
+      next.track.insert(next.track.end(), part.begin(), part.end());
+    }
+    nodes += node_count(next.track);
+    if (nodes > kMaxNodes) return too_many_nodes();
+    if (previous != nullptr) r.pairs.push_back(figures);
+    r.passes.push_back(std::move(next));
+  }
+  if (!pole_hi) {
+    Pass border = constant_pass(sheet, task, task.w.hi);
+    if (!r.passes.empty()) r.pairs.push_back(between(sheet, r.passes.back(), border, true));
+    r.passes.push_back(std::move(border));
+  }
+  return r;
+}
+
+}  // namespace burin::cycle

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the paths lie on a sheet: constant parameter (I1) or constant scallop (I2).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "burin/base/result.h"
+#include "burin/plan/cycle/scallop.h"
+
+namespace burin::cycle {
+
+/// The rectangle of parameters to be covered and what is allowed.
+struct PassTask {
+  geom::Interval t, w;
+  double scallop = 0;
+  std::optional<double> side_step;
+  double path_mm = 1e-6;
+  std::size_t max_paths = 0;
+};
+
+struct PairFigures {
+  double scallop_min = 0, scallop_max = 0, side_step_max = 0;
+  bool last = false, side_step_binds = false;
+};
+
+struct Passes {
+  std::deque<Pass> passes;         ///< a deque: Before points into it
+  std::vector<PairFigures> pairs;  ///< pairs[i]: between passes i and i + 1
+};
+
+Result<Passes> iso_parametric(const Sheet& sheet, const PassTask& task);
+Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task);
+
+// What both share.
+
+/// Total of quintic nodes that one plan may hold (about 1 GB).
+inline constexpr std::size_t kMaxNodes = 6'000'000;
+
+/// Parameters t at which paths are compared: every knot span at least thrice, about `count` in all.
+std::vector<double> samples_along(const Sheet& sheet, geom::Interval t, int count);
+/// The border w = const is a single point.
+bool collapsed(const Sheet& sheet, geom::Interval t, double w);
+/// How much of the limits a cusp uses: 1 = a limit is reached; linear in the step to first order.
+double use_of_limits(const PassTask& task, const Cusp& c);
+/// A first guess of the step in w at t: flat surface, cut by a cusp of height S.
+double first_step(const Sheet& sheet, const PassTask& task, double t, double w);
+Pass constant_pass(const Sheet& sheet, const PassTask& task, double w);
+Error too_many_paths(const PassTask& task);
+Error too_many_nodes();
+
+}  // namespace burin::cycle

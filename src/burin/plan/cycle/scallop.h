@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cusp that two neighbouring paths leave, from the true positions of the ball.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "burin/plan/cycle/track.h"
+
+namespace burin::cycle {
+
+/// Height that stands for "the balls do not meet at all".
+inline constexpr double kNoOverlap = 1e30;
+
+struct Cusp {
+  double height = 0;     ///< over the surface with its stock; negative: below it
+  double side_step = 0;  ///< distance on the surface between the paths
+  double s = 0;          ///< parameter of the nearest place of the path before
+};
+
+/// One path over the whole region: a graph for each stretch that lies inside it, and its exact tool path.
+struct Pass {
+  std::vector<Graph> graphs;  ///< ascending in t, disjoint
+  Track track;                ///< of all graphs, one after the other
+
+  bool covers(double t) const;
+  double w_at(double t) const;  ///< of the graph that holds t, or the nearest one
+};
+
+/// What lies before a path: another path, or a single point (a collapsed border).
+struct Before {
+  Before(const Pass& pass, double radius) : centres(pass.track, radius), path(&pass) {}
+  Before(double t, double w) : pole(true), pole_t(t), pole_w(w) {}
+
+  NearestCentre centres;
+  const Pass* path = nullptr;
+  bool pole = false;
+  double pole_t = 0, pole_w = 0;
+};
+
+/// Between the path before and the ball at (t, w). `slope`: dw/dt of the new path there; when it is not known
+/// yet the direction of the old path counts. The cusp is where the sphere about the new centre, cut by the
+/// plane across the new path, meets the tube about the old path.
+Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope);
+
+/// Height left at a surface point by a single ball.
+double height_at(const Sheet& sheet, double t, double w, Point3 centre);
+
+}  // namespace burin::cycle
