@@ -40,9 +40,10 @@ class Measure {
     const double spacing = station_spacing();
     for (std::size_t i = 0; i < passes_.size(); ++i) {
       const std::vector<Station> from = stations(passes_[i], spacing);
-      for (const Station& s : from) gouge_at(s.foot.u, s.foot.v);
+      for (const Station& s : from) height(s.foot.u, s.foot.v);
       if (i + 1 < passes_.size()) report_.ridges.push_back(ridge(from, passes_[i + 1]));
     }
+    whole_surface(spacing);
     bool any = false;
     for (std::size_t i = 0; i + 1 < report_.ridges.size(); ++i) {
       const ScallopReport::Ridge& r = report_.ridges[i];
@@ -71,8 +72,41 @@ class Measure {
       for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i)
         length += distance(pass.tips[i], pass.tips[i + 1]);
     const double wanted = options_.spacing_mm > 0 ? options_.spacing_mm : 0.25 * options_.radius_mm;
-    const double least = length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
+    // Half of the samples for the ridges.
+    const double least = 2 * length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
     return std::max(wanted, least);
+  }
+
+  /// Longest of a few polylines along one direction.
+  double extent(geom::Direction along) {
+    constexpr int kLines = 9, kPieces = 64;
+    const geom::Interval u = surface_.domain(geom::Direction::u), v = surface_.domain(geom::Direction::v);
+    double longest = 0;
+    for (int i = 0; i < kLines; ++i) {
+      double length = 0;
+      Point3 last;
+      for (int k = 0; k <= kPieces; ++k) {
+        double s = double(k) / kPieces, t = double(i) / (kLines - 1);
+        if (along == geom::Direction::v) std::swap(s, t);
+        const Point3 p = evaluator_.point(u.lo + s * u.length(), v.lo + t * v.length());
+        if (k > 0) length += distance(p, last);
+        last = p;
+      }
+      longest = std::max(longest, length);
+    }
+    return longest;
+  }
+
+  /// Cuts below the surface anywhere: what only the ridges and contacts looked at could miss them.
+  void whole_surface(double spacing) {
+    const double size_u = extent(geom::Direction::u), size_v = extent(geom::Direction::v);
+    const double most = std::max<double>(4, double(options_.max_samples) / 2);
+    const double step = std::max(spacing, std::sqrt(size_u * size_v / most));
+    const auto pieces = [&](double size) { return static_cast<int>(std::clamp(size / step, 8.0, most / 8)); };
+    const int nu = pieces(size_u), nv = pieces(size_v);
+    const geom::Interval u = surface_.domain(geom::Direction::u), v = surface_.domain(geom::Direction::v);
+    for (int j = 0; j <= nv; ++j)
+      for (int i = 0; i <= nu; ++i) height(u.lo + u.length() * i / nu, v.lo + v.length() * j / nv);
   }
 
   Station station(Point3 tip) const {
@@ -113,23 +147,20 @@ class Measure {
     return best;
   }
 
-  /// Height of what is left over the surface at (u, v): negative where it was cut too deep.
+  /// Height of what is left over the surface at (u, v): negative where it was cut too deep, which is noted.
   double height(double u, double v) {
     ++report_.samples;
     const double side = options_.normal_reversed ? -1 : 1;
     const Vec3 n = side * geom::normal(surface_, u, v);
+    if (!(norm(n) > 0.5)) return 0;  // no area around: nothing stands there
     const Point3 q = evaluator_.point(u, v) + options_.stock_mm * n;
     const double reach = 2 * options_.radius_mm;
-    const auto h = sweep_.entry(q, n, -reach, reach);
-    return h ? *h : reach;
-  }
-
-  void gouge_at(double u, double v) {
-    const double h = height(u, v);
+    const double h = sweep_.entry(q, n, -reach, reach, 0).value_or(reach);
     if (-h > report_.gouge_max_mm) {
       report_.gouge_max_mm = -h;
       report_.gouge_at = evaluator_.point(u, v);
     }
+    return h;
   }
 
   ScallopReport::Ridge ridge(const std::vector<Station>& from, const TipPass& to) {
@@ -182,6 +213,12 @@ class Measure {
 
 ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
                               const ScallopOptions& options) {
+  bool usable = geom::validate(surface).ok() && options.radius_mm > 0 && std::isfinite(options.radius_mm) &&
+                std::isfinite(options.stock_mm) && std::isfinite(options.spacing_mm) && !passes.empty();
+  for (const TipPass& pass : passes)
+    for (const Point3& p : pass.tips)
+      usable = usable && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  if (!usable) return {};
   return Measure(surface, passes, options).run();
 }
 

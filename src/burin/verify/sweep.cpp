@@ -22,6 +22,11 @@ double middle(const Sweep::Segment& s, int axis) {
 struct Span {
   double in = 0, out = -1;
 };
+Span hull(Span a, Span b) {
+  if (a.in > a.out) return b;
+  if (b.in > b.out) return a;
+  return {std::min(a.in, b.in), std::max(a.out, b.out)};
+}
 Span through_ball(Point3 q, Vec3 n, Point3 c, double r) {
   const Vec3 d = c - q;
   const double b = dot(d, n), disc = b * b - dot(d, d) + r * r;
@@ -103,13 +108,13 @@ void Sweep::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
   split(child + 1, half, end);
 }
 
-std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to) const {
+std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to, double leaves_at) const {
   if (segments_.empty()) return std::nullopt;
   double best = to;
   bool found = false;
   const auto take = [&](Span span) {
     const double in = std::max(span.in, from);
-    if (in <= span.out && in <= best) best = in, found = true;
+    if (in <= span.out && in <= best && span.out >= leaves_at) best = in, found = true;
   };
   // Halving needs at most 32 levels; two children each wait at once.
   std::array<std::uint32_t, 80> stack{};
@@ -125,9 +130,10 @@ std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to) con
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      take(through_ball(q, n, segments_[i].a, radius_));
-      take(through_ball(q, n, segments_[i].b, radius_));
-      take(through_cylinder(q, n, segments_[i], radius_));
+      // A capsule is convex: what the line has of its three parts is one span.
+      take(
+          hull(hull(through_ball(q, n, segments_[i].a, radius_), through_ball(q, n, segments_[i].b, radius_)),
+               through_cylinder(q, n, segments_[i], radius_)));
     }
   }
   return found ? std::optional(best) : std::nullopt;

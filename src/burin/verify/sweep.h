@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,8 +20,10 @@ class Sweep {
   Sweep(std::vector<Segment> segments, double radius);
 
   /// The smallest h in [from, to] for which q + h n (n a unit vector) lies in the volume, nothing when there
-  /// is none.
-  std::optional<double> entry(geom::Point3 q, geom::Vec3 n, double from, double to) const;
+  /// is none. Only capsules count that the line leaves at `leaves_at` or later: with 0, a ball on the far
+  /// side of a thin wall is no cut into the near one.
+  std::optional<double> entry(geom::Point3 q, geom::Vec3 n, double from, double to,
+                              double leaves_at = -std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Node {
