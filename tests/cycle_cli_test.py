@@ -271,7 +271,7 @@ class Paths(unittest.TestCase):
         along_u = run.json()["parameters"]["along"] == "u"
         for share in (0.2, 0.5, 0.8):
             heights = []
-            for t in np.linspace(0.0, 1.0, 1500):
+            for t in np.linspace(0.0, 1.0, 4000):
                 u = u0 + (share if along_u else t) * (u1 - u0)
                 v = v0 + (t if along_u else share) * (v1 - v0)
                 p, n = surface.point(u, v), surface.normal(u, v)
@@ -359,7 +359,8 @@ class Program(unittest.TestCase):
 
     def test_nc_follows_the_setpoints(self):
         run = Run(program(cycle(10, 10, s=0.05), block(10, wave(0, 20, 0, 10))), "--tolerance", "0.005")
-        nc = open(run.file("o.ngc")).read()
+        with open(run.file("o.ngc")) as f:
+            nc = f.read()
         self.assertNotRegex(nc, r"[0-9][eE][-+]?[0-9]")
         self.assertTrue(all(len(line) < 256 for line in nc.splitlines()))
         # Ends of straight blocks lie near the stream.
@@ -383,7 +384,8 @@ class Program(unittest.TestCase):
         text = program(cycle(10, 20, i=2, s=0.03), block(10, wave(0, 30, 0, 20)), block(20, wave(30, 60, 0, 20)))
         a, b = Run(text), Run(text, "--threads", "1")
         for name in ("o.ngc", "o.cl", "s.json", "s.npy"):
-            self.assertEqual(open(a.file(name), "rb").read(), open(b.file(name), "rb").read(), name)
+            with open(a.file(name), "rb") as one, open(b.file(name), "rb") as two:
+                self.assertEqual(one.read(), two.read(), name)
 
     def test_errors_leave_nothing(self):
         good = program(cycle(10, 10), block(10, flat(0, 30, 0, 20)))
@@ -394,7 +396,8 @@ class Program(unittest.TestCase):
             self.assertEqual(os.listdir(run.folder), ["p.nc"])
 
     def test_strict(self):
-        text = program(cycle(10, 10, s=0.05), block(10, flat(0, 20, 0, 10)), "N50 G91 G00 Z1.;\n").replace("G90 G00 Z40.", "G00 Z40.")
+        """G91 of the repeats stays in force: the last retract becomes a step."""
+        text = program("G106.1 W25.;\n", block(10, flat(0, 20, 0, 10)), "N50 G91 X30.;\n").replace("G90 G00 Z40.", "G00 Z40.")
         self.assertIn("G91", Run(text).stderr)
         self.assertEqual(os.listdir(Run(text, "--strict", expect=(1,)).folder), ["p.nc"])
 

@@ -93,6 +93,8 @@ struct Servo {
   double median_us = 0, p999_us = 0, max_us = 0;  ///< of one tick
 };
 
+// More setpoints than this (3 GB) are a mistake in feed or period rather than a part.
+constexpr std::size_t kMaxSetpoints = 40'000'000;
 // Time of this many periods says what a period takes; more would only take longer.
 constexpr std::size_t kTimedTicks = 200'000;
 
@@ -122,6 +124,11 @@ Result<Servo> interpolate(const job::CycleJob& job, const servo::Limits& limits,
   if (!plan) return plan.error();
   servo.planning_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   servo.plan = std::move(*plan);
+  if (servo.plan.setpoints > kMaxSetpoints)
+    return Error{ErrorCode::range,
+                 std::to_string(servo.plan.setpoints) + " setpoints (at most " +
+                     std::to_string(kMaxSetpoints) + ": a longer --period, a higher feed, or fewer paths)",
+                 {}};
   servo.setpoints = servo::run(servo.plan);
   servo.quality = servo::measure(servo.plan, servo.setpoints);
   time_ticks(servo);
@@ -189,7 +196,7 @@ void fill_report(const CycleArgs& args, const job::CycleJob& job, const Servo& s
                            {"surfaces_out", job.surfaces_out},
                            {"paths", job.paths},
                            {"setpoints", servo.setpoints.size()},
-                           {"nc_blocks", nc.moves},
+                           {"nc_blocks", nc.line_to_record.size()},
                            {"lifted", job.lifted},
                            {"repeats", job.repeats}};
   session.report.lengths_mm = {{"cut", job.cut_mm}, {"link", job.link_mm}, {"rapid", job.rapid_mm}};

@@ -80,6 +80,8 @@ class Builder {
  private:
   Error at_line(Error error, int line) const {
     if (error.where.line == 0) error.where = {.file = options_.file_name, .line = line, .column = 1};
+    // To the planner these are its options; here they come from the program.
+    if (error.code == ErrorCode::usage) error.code = ErrorCode::range;
     return error;
   }
 

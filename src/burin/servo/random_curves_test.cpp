@@ -17,7 +17,12 @@ namespace {
 int cases() {
   const char* text = std::getenv("BURIN_CASES");
   const int n = text ? std::atoi(text) : 0;
-  return n > 0 ? n : 5000;
+#ifdef NDEBUG
+  constexpr int kUsual = 5000;
+#else
+  constexpr int kUsual = 300;
+#endif
+  return n > 0 ? n : kUsual;
 }
 
 /// What rounding alone does to a difference of setpoints: each is right to half a unit in the last place.
@@ -25,6 +30,17 @@ double rounding(const std::vector<Setpoint>& s) {
   double largest = 0;
   for (const Setpoint& p : s) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   return largest * std::numeric_limits<double>::epsilon();
+}
+
+/// Smallest step between setpoints of equal feed: what rounding is compared with in the feed fluctuation.
+double smallest_step(const std::vector<Setpoint>& s, double period) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < s.size(); ++i) {
+    const double feed = s[i].feed_mm_min;
+    if (feed > 0 && std::abs(feed - s[i - 1].feed_mm_min) < 1e-9 * feed)
+      least = std::min(least, feed / 60 * period);
+  }
+  return least;
 }
 
 TEST(Plan, RandomCurvesKeepTheirLimits) {
@@ -46,7 +62,7 @@ TEST(Plan, RandomCurvesKeepTheirLimits) {
     ASSERT_LE(q.jerk_max_mm_s3, limits.jerk_mm_s3 * (1 + 1e-12) + 8 * noise / (t * t * t))
         << "seed " << i + 1;
     EXPECT_LE(q.chord_error_max_mm, limits.chord_error_mm + noise) << "seed " << i + 1;
-    EXPECT_LT(q.feed_fluctuation_max, 1e-4) << "seed " << i + 1;
+    EXPECT_LT(q.feed_fluctuation_max, 1e-6 + 4 * noise / smallest_step(s, t)) << "seed " << i + 1;
     double top = 0;
     for (const Stretch& stretch : stretches)
       top = std::max(top, stretch.feed_mm_min > 0 ? stretch.feed_mm_min : limits.rapid_mm_min);

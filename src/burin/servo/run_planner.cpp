@@ -18,9 +18,9 @@ constexpr int kSlowRounds = 80;  ///< of that
 constexpr int kSettle = 8;       ///< rounds to meet the end
 /// An arc between two setpoints this much longer than its chord is more than a bend of 2 rad.
 constexpr double kSkip = 1.4;
-/// The end missed by less than the first share of the slowest step is taken at once; by more only when slowing
-/// at the bends that were jumped over (kSkipRounds of it) did not help, and only when the path was not used up
-/// long before the profile.
+/// The end missed by less than the first share of the slowest step is taken at once; by more only when
+/// slowing at the bends that were jumped over (kSkipRounds of it) did not help, and only when the path was
+/// not used up long before the profile.
 constexpr double kMissed = 1e-3, kEarly = 0.1;
 constexpr int kSkipRounds = 6;
 /// Share of the acceleration and jerk that stays for changes of feed where the path is curved; both others

@@ -61,6 +61,12 @@ bool acceptable(const QuinticNode& n) {
          std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMaxCoordinate;
 }
 
+/// u and v; a curve has one parameter only, its v is not a number.
+bool acceptable_uv(const QuinticNode& n) {
+  return std::isfinite(n.t) && std::isfinite(n.p.x) && std::isfinite(n.d1.x) && std::isfinite(n.d2.x) &&
+         (std::isfinite(n.p.y) || std::isnan(n.p.y));
+}
+
 Error bad(std::size_t stretch, const std::string& what, ErrorCode code = ErrorCode::geometry) {
   return {code, "stretch " + std::to_string(stretch) + ": " + what, {}};
 }
@@ -79,7 +85,7 @@ Result<void> check(const Stretch& stretch, std::size_t index) {
                    std::to_string(nodes.size()) + " (one for each)",
                ErrorCode::usage);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!acceptable(nodes[i]) || (uv && !acceptable(stretch.uv.nodes[i])))
+    if (!acceptable(nodes[i]) || (uv && !acceptable_uv(stretch.uv.nodes[i])))
       return bad(index, "a number of node " + std::to_string(i) +
                             " is not finite or too large (coordinates within 1e7 mm)");
     if (i > 0 && !(nodes[i].t > nodes[i - 1].t))

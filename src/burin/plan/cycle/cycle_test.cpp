@@ -71,8 +71,15 @@ Ridges ridges(const NurbsSurface& s, const SurfacePlan& p, double radius, double
     for (std::size_t k = 1; k + 1 < h.size(); ++k) {
       r.most = std::max(r.most, h[k]);
       if (h[k] > h[k - 1] && h[k] >= h[k + 1] && h[k] > 1e-5) {
-        // The top between samples, by the steeper of its flanks.
-        tops.push_back(h[k]);
+        // The top between the samples, where its flanks meet.
+        double top = h[k];
+        if (k >= 2 && k + 2 < h.size()) {
+          const double left = h[k - 1] - h[k - 2], right = h[k + 1] - h[k + 2];
+          // h[k - 1] + left x = h[k + 1] + right (2 - x)
+          const double x = (h[k + 1] + 2 * right - h[k - 1]) / (left + right);
+          top = std::max(top, h[k - 1] + left * x);
+        }
+        tops.push_back(top);
       }
     }
     // Without the last pair.

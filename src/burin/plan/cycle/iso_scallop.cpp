@@ -12,7 +12,10 @@ namespace {
 // (height 0.6 %): never above S, and within 2 % of it with room for what a check measures differently.
 constexpr double kAim = 0.9955;
 constexpr double kOff = 0.003;
-constexpr double kSolved = 2e-4;
+// Solved this closely, so that the slopes of the spline do not feel what is left.
+constexpr double kSolved = 3e-6;
+// Nodes are at least this part of a step apart: what is finer is no feature of the scallop.
+constexpr double kFinest = 0.08;
 constexpr int kSamples = 32;
 constexpr int kRounds = 8;
 constexpr std::size_t kMostNodes = 4000;
@@ -26,6 +29,7 @@ enum class State {
 struct Node {
   double t = 0, w = 0;
   State state = State::done;
+  bool end = false;  ///< the last one of a stretch
 };
 
 class Front {
@@ -64,9 +68,9 @@ class Front {
     if (previous_ != nullptr && !previous_->covers(t)) return {t, task_.w.hi, State::done};
     const double w0 = start_w(t);
     if (!(w0 < task_.w.hi)) return {t, task_.w.hi, State::done};
-    double ok = 0, bad = -1;
+    double ok = 0, bad = -1;  // steps known to keep and to break the limits
     double step = guess_ > 0 ? guess_ : first_step(sheet_, task_, t, w0);
-    double best_step = step, best_off = 1e300;
+    double best_step = step, best_off = 1e300, last_step = 0, last_use = 0;
     constexpr int kIterations = 40;
     for (int i = 0; i < kIterations; ++i) {
       const bool border = step >= task_.w.hi - w0;
@@ -76,13 +80,17 @@ class Front {
       if (std::abs(u - kAim) < best_off) best_off = std::abs(u - kAim), best_step = step;
       if (best_off < kSolved) break;
       (u <= kAim ? ok : bad) = step;
-      double next = u > 0 ? std::clamp(step * kAim / u, 0.1 * step, 4 * step) : 4 * step;
+      // Secant; the first time through (0, 0), as the use grows nearly linearly.
+      const double rise = (u - last_use) / (step - last_step);
+      double next = rise > 0 ? std::clamp(step + (kAim - u) / rise, 0.1 * step, 4 * step) : 4 * step;
+      last_step = step;
+      last_use = u;
       if (bad >= 0 && !(next > ok && next < bad)) next = 0.5 * (ok + bad);
       if (bad < 0 && next <= ok) next = 2 * ok;
       step = next;
       if (bad >= 0 && bad - ok < 1e-9 * bad) break;
     }
-    if (best_off > kSolved && bad >= 0) best_step = std::max(ok, least_);
+    if (best_off > kOff && bad >= 0) best_step = std::max(ok, least_);
     best_step = std::max(best_step, least_);
     guess_ = best_step;
     return {t, std::min(w0 + best_step, task_.w.hi), State::active};
@@ -103,10 +111,11 @@ class Front {
       if (i > 0) {
         const Node a = nodes_[i - 1], b = nodes_[i];
         const bool edge = (a.state == State::active) != (b.state == State::active);
-        const bool on_border = a.w >= task_.w.hi && b.w >= task_.w.hi;
-        if (edge && !on_border) {
-          const Node e = a.state == State::active ? meeting(a, b.t) : meeting(b, a.t);
-          if (e.t > a.t && e.t < b.t) out.push_back(e);
+        const bool found = (a.state == State::active ? a : b).end;
+        if (edge && !found) {
+          Node e = a.state == State::active ? meeting(a, b.t) : meeting(b, a.t);
+          e.end = true;
+          if (e.t > a.t && e.t < b.t && e.state == State::active) out.push_back(e);
         }
       }
       out.push_back(nodes_[i]);
@@ -125,7 +134,8 @@ class Front {
       (inside ? in : out) = mid;
       if (std::abs(out - in) < 1e-7 * task_.t.length()) break;
     }
-    return {in, task_.w.hi, State::active};
+    // The path reaches the border there, or turns back before it (then it just ends).
+    return solve(in);
   }
 
   std::vector<Graph> fit() const {
@@ -142,8 +152,6 @@ class Front {
         flush();
         continue;
       }
-      // Two ends on the border with nothing between them belong to different stretches.
-      if (!w.empty() && w.back() >= task_.w.hi && n.w >= task_.w.hi) flush();
       t.push_back(n.t);
       w.push_back(n.w);
     }
@@ -159,10 +167,12 @@ class Front {
     for (const Graph& g : graphs)
       for (std::size_t i = 0; i + 1 < g.t.size(); ++i) {
         const double t = 0.5 * (g.t[i] + g.t[i + 1]);
-        if (!(g.t[i + 1] - g.t[i] > 1e-6 * task_.t.length())) continue;
         const UvPoint p = g.at(t);
         const double u = use(t, std::min(p.w, task_.w.hi), p.w1);
-        note(u);
+        note();
+        const Contact c = sheet_.contact(t, std::min(p.w, task_.w.hi));
+        const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
+        if (!(apart > kFinest * last_.side_step)) continue;
         const bool half_of_pole = pole_hi_ && u < kAim;
         if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(t);
       }
@@ -176,7 +186,7 @@ class Front {
     return true;
   }
 
-  void note(double) {
+  void note() {
     figures_.scallop_min = std::min(figures_.scallop_min, last_.height);
     figures_.scallop_max = std::max(figures_.scallop_max, last_.height);
     figures_.side_step_max = std::max(figures_.side_step_max, last_.side_step);

@@ -25,7 +25,8 @@ bool cusp_point(Point3 b, Vec3 axis, Point3 a, double radius, Vec3 down, Point3&
 }
 
 // The nearest of the creases between two parameters may be nearer than what Gauss-Newton found.
-void try_creases(const Sheet& sheet, Point3 x, double wa, double wb, double t, Contact& best) {
+bool try_creases(const Sheet& sheet, Point3 x, double wa, double wb, double t, Contact& best) {
+  bool nearer = false;
   for (const double crease : sheet.w_creases()) {
     if (!(crease > std::min(wa, wb) && crease < std::max(wa, wb))) continue;
     double tc = t;
@@ -35,25 +36,71 @@ void try_creases(const Sheet& sheet, Point3 x, double wa, double wb, double t, C
         const Vec3 n = best.n;
         best = c;
         best.n = unit(n + c.n);
+        nearer = true;
       }
       const double tt = dot(c.st, c.st);
       if (!(tt > 0)) break;
       tc = std::clamp(tc + dot(x - c.s, c.st) / tt, sheet.t_range().lo, sheet.t_range().hi);
     }
   }
+  return nearer;
 }
 
-double height_of(const Sheet& sheet, Point3 x, double ta, double wa, double tb, double wb, double step) {
+/// The cusp seen from the surface.
+struct Foot {
+  double height = 0;
+  bool outside = false;  ///< the cusp stands beyond the end of the paths
+};
+
+Foot foot_of(const Sheet& sheet, Point3 x, double ta, double wa, double tb, double wb, double step) {
   double t = 0.5 * (ta + tb), w = 0.5 * (wa + wb);
   // A thousandth of the step off the foot changes the height by a millionth of the cusp.
   Contact c = sheet.nearest(x, t, w, 1e-3 * step);
-  if (!sheet.w_creases().empty()) try_creases(sheet, x, wa, wb, t, c);
+  const bool crease = !sheet.w_creases().empty() && try_creases(sheet, x, wa, wb, t, c);
   const Vec3 e = x - c.s;
   const double along = dot(e, c.n);
-  // On a smooth surface |e| = |along|; at a crease or border the distance counts.
-  const Vec3 off = e - along * c.n;
-  const double height = norm(off) > 1e-2 * step ? std::copysign(norm(e), along) : along;
-  return height - sheet.stock();
+  Foot f;
+  // On a crease the distance counts; at a border the cusp may stand a little outside, which is no height.
+  f.height = (crease ? std::copysign(norm(e), along) : along) - sheet.stock();
+  const bool at_end = t <= sheet.t_range().lo || t >= sheet.t_range().hi;
+  f.outside = at_end && std::abs(dot(e, unit(c.st))) > 3e-3 * step;
+  return f;
+}
+
+// What a ball leaves at a surface point.
+double left_by(const Sheet& sheet, const Contact& at, Point3 centre) {
+  const Vec3 q = centre - at.s;
+  const double b = dot(q, at.n);
+  const double off2 = std::max(0.0, dot(q, q) - b * b);
+  const double r2 = sheet.radius() * sheet.radius();
+  if (!(off2 < r2)) return kNoOverlap;
+  return b - std::sqrt(r2 - off2) - sheet.stock();
+}
+
+// The cusp on the edge t = const where the paths end: the place that both leave equally high. The new path is
+// the half-line from (or through) its centre along `axis`.
+double edge_cusp(const Sheet& sheet, const Before& before, double t_edge, double wa, double wb,
+                 const Contact& b, Vec3 axis, bool ends_here) {
+  const double reach = sheet.radius() + sheet.stock();
+  const double inward = t_edge <= sheet.t_range().lo ? 1 : -1;
+  const auto both = [&](double w, double& ha, double& hb) {
+    const Contact q = sheet.contact(t_edge, w);
+    const Point3 over = q.s + reach * q.n;
+    ha = left_by(sheet, q, before.centres.find(over).c);
+    double s = dot(over - b.c, axis);
+    if (ends_here && s * inward < 0) s = 0;
+    hb = left_by(sheet, q, b.c + s * axis);
+  };
+  double lo = wa, hi = wb, h = kNoOverlap;
+  constexpr int kHalvings = 12;  // the heights are linear there: 1/4096 of the step is 1e-3 of the cusp
+  for (int i = 0; i < kHalvings; ++i) {
+    const double w = 0.5 * (lo + hi);
+    double ha = 0, hb = 0;
+    both(w, ha, hb);
+    h = std::min(h, std::max(ha, hb));
+    (ha < hb ? lo : hi) = w;
+  }
+  return h;
 }
 
 double on_surface(const Sheet& sheet, Point3 sa, double ta, double wa, Point3 sb, double tb, double wb) {
@@ -81,13 +128,7 @@ double Pass::w_at(double t) const {
 }
 
 double height_at(const Sheet& sheet, double t, double w, Point3 centre) {
-  const Contact c = sheet.contact(t, w);
-  const Vec3 q = centre - c.s;
-  const double b = dot(q, c.n);
-  const double off2 = std::max(0.0, dot(q, q) - b * b);
-  const double r2 = sheet.radius() * sheet.radius();
-  if (!(off2 < r2)) return kNoOverlap;
-  return b - std::sqrt(r2 - off2) - sheet.stock();
+  return left_by(sheet, sheet.contact(t, w), centre);
 }
 
 Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope) {
@@ -108,7 +149,13 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   r.side_step = on_surface(sheet, at_a.s, a.s, wa, b.s, t, w);
   const Vec3 axis = unit(slope ? b.ct + *slope * b.cw : a.tangent);
   const double radius = sheet.radius();
+  const geom::Interval ts = sheet.t_range();
+  const bool at_edge = t <= ts.lo || t >= ts.hi;
   Point3 x;
+  const Vec3 apart = a.c - b.c;
+  // The end of the old path lies on the new one, or nearly: nothing stands between them.
+  constexpr double kAlong = 0.9;
+  if (a.at_end && std::abs(dot(apart, axis)) > kAlong * norm(apart)) return r;
   if (!cusp_point(b.c, axis, a.c, radius, down, x)) {
     r.height = kNoOverlap;
     return r;
@@ -129,7 +176,15 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   }
   wa = before.path->w_at(a.s);
   r.s = a.s;
-  r.height = height_of(sheet, x, a.s, wa, t, w, std::max(step, r.side_step));
+  const Foot foot = foot_of(sheet, x, a.s, wa, t, w, std::max(step, r.side_step));
+  r.height = foot.height;
+  if (foot.outside || at_edge) {
+    // Where the cusp leaves the surface its last place is on the edge.
+    const double t_edge = at_edge ? t : (t > 0.5 * (ts.lo + ts.hi) ? ts.hi : ts.lo);
+    const Vec3 forward = dot(axis, b.ct) >= 0 ? axis : -axis;
+    const double edge = edge_cusp(sheet, before, t_edge, before.path->w_at(t_edge), w, b, forward, at_edge);
+    r.height = foot.outside ? edge : std::max(edge, r.height);
+  }
   return r;
 }
 

@@ -13,8 +13,9 @@ using geom::Side;
 // |St x Sw| below this, relative to the typical |St| |Sw|: the direction of the normal has lost half of its
 // digits.
 constexpr double kDegenerate = 1e-8;
-// Where a normal is not defined it is taken this far inside, relative to the domain: the nearest first.
-constexpr double kPulls[] = {1e-6, 1e-4, 1e-2};
+// Where a normal is not defined it is taken this far inside, relative to the domain: the nearest first. Its
+// second derivatives lose digits with the square of this (1e-16 / 1e-10), and are 1e-5 of a domain off.
+constexpr double kPulls[] = {1e-5, 1e-3, 1e-2};
 // |n.k| below this counts as vertical.
 constexpr double kVertical = 1e-6;
 
@@ -52,6 +53,16 @@ NormalDerivatives unit_normal_derivatives(const geom::SurfaceDerivatives3& d) {
   r.tw = (ntw - (dot(r.w, nt) + dot(n, ntw)) * n - mt * r.w - mw * r.t) / m;
   r.ww = (nww - (dot(r.w, nw) + dot(n, nww)) * n - 2.0 * mw * r.w) / m;
   return r;
+}
+
+// First derivatives of the unit normal n, which may be turned against St x Sw.
+void normal_slopes(const geom::SurfaceDerivatives& d, Vec3 n, Vec3& nt, Vec3& nw) {
+  const Vec3 big = cross(d.du, d.dv);
+  const double k = std::copysign(1 / norm(big), dot(big, n));
+  const Vec3 bt = cross(d.duu, d.dv) + cross(d.du, d.duv);
+  const Vec3 bw = cross(d.duv, d.dv) + cross(d.du, d.dvv);
+  nt = k * (bt - dot(bt, n) * n);
+  nw = k * (bw - dot(bw, n) * n);
 }
 
 double typical_length(const geom::NurbsSurface& s, Direction d) {
@@ -122,20 +133,22 @@ Contact Sheet::contact(double t, double w, Side side_t, Side side_w) const {
     r.n = {0, 0, 1};
     for (const double pull : kPulls) {
       const geom::Point2 p = pulled_inside(t, w, pull);
-      if (normal_of(at(p.x, p.y, side_t, side_w), r.n)) break;
+      const geom::SurfaceDerivatives inside = at(p.x, p.y, side_t, side_w);
+      if (!normal_of(inside, r.n)) continue;
+      Vec3 nt, nw;
+      normal_slopes(inside, r.n, nt, nw);
+      r.n = unit(r.n + (t - p.x) * nt + (w - p.y) * nw);
+      break;
     }
   }
   r.c = r.s + (radius_ + stock_) * r.n;
   r.ct = r.st;
   r.cw = r.sw;
   if (!r.degenerate) {
-    const Vec3 big = cross(d.du, d.dv);
-    const double m = norm(big);
-    const Vec3 nt = cross(d.duu, d.dv) + cross(d.du, d.duv);
-    const Vec3 nw = cross(d.duv, d.dv) + cross(d.du, d.dvv);
-    const double k = sign_ * (radius_ + stock_) / m;
-    r.ct = r.st + k * (nt - dot(nt, r.n) * r.n);
-    r.cw = r.sw + k * (nw - dot(nw, r.n) * r.n);
+    Vec3 nt, nw;
+    normal_slopes(d, r.n, nt, nw);
+    r.ct = r.st + (radius_ + stock_) * nt;
+    r.cw = r.sw + (radius_ + stock_) * nw;
   }
   return r;
 }
@@ -168,6 +181,13 @@ CentreDerivatives Sheet::derivatives(double t, double w, Side side_t, Side side_
       const geom::SurfaceDerivatives3 inside = at3(p.x, p.y);
       if (!normal_of(inside, r.at.n)) continue;
       nd = unit_normal_derivatives(inside);
+      // Back to the place itself by Taylor.
+      const double dt = t - p.x, dw = w - p.y;
+      const Vec3 first = dt * nd.t + dw * nd.w;
+      const Vec3 second = (0.5 * dt * dt) * nd.tt + (dt * dw) * nd.tw + (0.5 * dw * dw) * nd.ww;
+      r.at.n = unit(r.at.n + sign_ * (first + second));
+      nd.t = nd.t + dt * nd.tt + dw * nd.tw;
+      nd.w = nd.w + dt * nd.tw + dw * nd.ww;
       break;
     }
   }

@@ -329,7 +329,9 @@ NearestCentre::Place NearestCentre::polish(Point3 p, std::size_t piece, std::siz
       best.c = {d.p.x, d.p.y, d.p.z + radius_};
       best.tangent = d.d1;
       best.s = track[piece].swing ? track[piece].s0 : tip.nodes[interval].t + x * h;
-      best.at_end = false;
+      constexpr double kEnd = 1e-9;
+      best.at_end = (piece == 0 && interval == 0 && x <= kEnd) ||
+                    (piece + 1 == track.size() && interval + 2 == tip.nodes.size() && x >= 1 - kEnd);
     }
     double bend = dot(d.d1, d.d1) + dot(e, d.d2);
     if (!(bend > 0.1 * dot(d.d1, d.d1))) bend = dot(d.d1, d.d1);
@@ -349,18 +351,12 @@ NearestCentre::Place NearestCentre::polish(Point3 p, std::size_t piece, std::siz
     } else if (next < 0) {
       if (interval > 0) --interval;
       else if (piece > 0) interval = track[--piece].tip.nodes.size() - 2;
-      else {
-        best.at_end = true;
-        break;
-      }
+      else break;
       x = 1;
     } else {
       if (interval + 2 < tip.nodes.size()) ++interval;
       else if (piece + 1 < track.size()) ++piece, interval = 0;
-      else {
-        best.at_end = true;
-        break;
-      }
+      else break;
       x = 0;
     }
   }
