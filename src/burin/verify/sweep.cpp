@@ -12,7 +12,8 @@ using geom::Box3;
 using geom::Point3;
 using geom::Vec3;
 
-constexpr std::uint32_t kLeaf = 8;
+constexpr std::uint32_t kLeaf = 4;
+constexpr double kRounding = 1e-12;  // of the half diagonal of a box, as a bound
 
 double middle(const Sweep::Segment& s, int axis) {
   return axis == 0 ? s.a.x + s.b.x : axis == 1 ? s.a.y + s.b.y : s.a.z + s.b.z;
@@ -58,21 +59,14 @@ Span through_cylinder(Point3 q, Vec3 n, const Sweep::Segment& s, double r) {
   return {std::max(in, std::min(h0, h1)), std::min(out, std::max(h0, h1))};
 }
 
-/// The range of h for which the line lies in the box.
-Span through_box(Point3 q, Vec3 n, const Box3& box) {
-  Span span{-1e300, 1e300};
-  const std::array<std::array<double, 4>, 3> axes = {
-      {{q.x, n.x, box.lo.x, box.hi.x}, {q.y, n.y, box.lo.y, box.hi.y}, {q.z, n.z, box.lo.z, box.hi.z}}};
-  for (const auto& [p, d, lo, hi] : axes) {
-    if (d == 0) {
-      if (p < lo || p > hi) return {};
-      continue;
-    }
-    const double h0 = (lo - p) / d, h1 = (hi - p) / d;
-    span.in = std::max(span.in, std::min(h0, h1));
-    span.out = std::min(span.out, std::max(h0, h1));
-  }
-  return span;
+/// Bounds of where the line enters and leaves balls whose centres lie in a sphere; in > out: it meets none.
+Span through_balls(Point3 q, Vec3 n, Point3 middle, double spread, double r) {
+  const Vec3 d = middle - q;
+  const double along = dot(d, n);
+  const double aside = std::max(0.0, std::sqrt(std::max(0.0, dot(d, d) - along * along)) - spread);
+  if (aside > r) return {};
+  const double half = std::sqrt((r - aside) * (r + aside));
+  return {along - spread - half, along + spread + half};
 }
 
 }  // namespace
@@ -89,7 +83,8 @@ void Sweep::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
     box.add(segments_[i].b);
     centers.add(lerp(segments_[i].a, segments_[i].b, 0.5));
   }
-  nodes_[node].box = box.grown(radius_);
+  if (begin < end) nodes_[node].middle = lerp(box.lo, box.hi, 0.5);
+  nodes_[node].spread = 0.5 * box.diagonal() * (1 + kRounding);
   if (end - begin <= kLeaf) {
     nodes_[node].first = begin;
     nodes_[node].count = end - begin;
@@ -116,17 +111,21 @@ std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to, dou
     const double in = std::max(span.in, from);
     if (in <= span.out && in <= best && span.out >= leaves_at) best = in, found = true;
   };
-  // Halving needs at most 32 levels; two children each wait at once.
+  // Halving needs at most 32 levels; two children each wait at once, the one with the lower bound is next.
   std::array<std::uint32_t, 80> stack{};
   std::size_t depth = 0;
   stack[depth++] = 0;
+  const auto bounds = [&](const Node& node) {
+    return through_balls(q, n, node.middle, node.spread, radius_);
+  };
   while (depth > 0) {
     const Node& node = nodes_[stack[--depth]];
-    const Span span = through_box(q, n, node.box);
-    if (std::max(span.in, from) > std::min(span.out, best)) continue;
+    const Span span = bounds(node);
+    if (std::max(span.in, from) > std::min(span.out, best) || span.out < leaves_at) continue;
     if (node.count == 0) {
-      stack[depth++] = node.first + 1;
-      stack[depth++] = node.first;
+      const bool second_first = bounds(nodes_[node.first + 1]).in < bounds(nodes_[node.first]).in;
+      stack[depth++] = node.first + (second_first ? 0 : 1);
+      stack[depth++] = node.first + (second_first ? 1 : 0);
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
