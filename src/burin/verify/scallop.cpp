@@ -16,9 +16,10 @@ using geom::Point3;
 using geom::Vec3;
 
 // Places on the line between two passes at which the height is taken before the ridge is narrowed down.
-constexpr int kAcross = 16;
-// Golden sections around the highest of them: the place of the ridge to 2e-5 of the side step.
-constexpr int kNarrow = 18;
+constexpr int kAcross = 24;
+// Golden sections around the highest of them: the place of the ridge to 5e-8 of the side step. It is an edge,
+// not a smooth top: its height is as wrong as its place times the slope there, side step / (2 R).
+constexpr int kNarrow = 30;
 
 // An end of a stretch counts as abreast when the way to it is square to the path within this (cosine).
 constexpr double kSquare = 0.02;
@@ -28,6 +29,10 @@ struct Station {
   Vec3 along;  ///< unit
   geom::SurfacePoint foot;
 };
+
+bool finite(Point3 p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 /// Every chord of a pass.
 template <class Each>
@@ -51,9 +56,10 @@ class Measure {
     const double spacing = station_spacing();
     for (std::size_t i = 0; i < passes_.size(); ++i) {
       const std::vector<Station> from = stations(passes_[i], spacing);
-      for (const Station& s : from) gouge_at(s.foot.u, s.foot.v);
+      for (const Station& s : from) height(s.foot.u, s.foot.v);
       if (i + 1 < passes_.size()) report_.ridges.push_back(ridge(from, passes_[i + 1]));
     }
+    whole_surface(spacing);
     bool any = false;
     for (std::size_t i = 0; i + 1 < report_.ridges.size(); ++i) {
       const ScallopReport::Ridge& r = report_.ridges[i];
@@ -81,8 +87,41 @@ class Measure {
     for (const TipPass& pass : passes_)
       for_chords(pass, [&](Point3 a, Point3 b) { length += distance(a, b); });
     const double wanted = options_.spacing_mm > 0 ? options_.spacing_mm : 0.25 * options_.radius_mm;
-    const double least = length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
+    // Half of the samples for the ridges.
+    const double least = 2 * length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
     return std::max(wanted, least);
+  }
+
+  /// Longest of a few polylines along one direction.
+  double extent(geom::Direction along) {
+    constexpr int kLines = 9, kPieces = 64;
+    const geom::Interval u = surface_.domain(geom::Direction::u), v = surface_.domain(geom::Direction::v);
+    double longest = 0;
+    for (int i = 0; i < kLines; ++i) {
+      double length = 0;
+      Point3 last;
+      for (int k = 0; k <= kPieces; ++k) {
+        double s = double(k) / kPieces, t = double(i) / (kLines - 1);
+        if (along == geom::Direction::v) std::swap(s, t);
+        const Point3 p = evaluator_.point(u.lo + s * u.length(), v.lo + t * v.length());
+        if (k > 0) length += distance(p, last);
+        last = p;
+      }
+      longest = std::max(longest, length);
+    }
+    return longest;
+  }
+
+  /// Cuts below the surface anywhere: what only the ridges and contacts looked at could miss them.
+  void whole_surface(double spacing) {
+    const double size_u = extent(geom::Direction::u), size_v = extent(geom::Direction::v);
+    const double most = std::max<double>(4, double(options_.max_samples) / 2);
+    const double step = std::max(spacing, std::sqrt(size_u * size_v / most));
+    const auto pieces = [&](double size) { return static_cast<int>(std::clamp(size / step, 8.0, most / 8)); };
+    const int nu = pieces(size_u), nv = pieces(size_v);
+    const geom::Interval u = surface_.domain(geom::Direction::u), v = surface_.domain(geom::Direction::v);
+    for (int j = 0; j <= nv; ++j)
+      for (int i = 0; i <= nu; ++i) height(u.lo + u.length() * i / nu, v.lo + v.length() * j / nv);
   }
 
   Station station(Point3 tip, Vec3 along) const {
@@ -128,26 +167,23 @@ class Measure {
     return best;
   }
 
-  /// Height of what is left over the surface at (u, v): negative where it was cut too deep.
+  /// Height of what is left over the surface at (u, v): negative where it was cut too deep, which is noted.
   double height(double u, double v) {
     ++report_.samples;
     const double side = options_.normal_reversed ? -1 : 1;
     const geom::SurfaceDerivatives d = evaluator_.derivatives(u, v);
     Vec3 n = geom::normal(d);
     if (n == Vec3{}) n = geom::normal(surface_, u, v);  // a pole
+    if (!(norm(n) > 0.5)) return 0;                     // no area around: nothing stands there
     n = side * n;
     const Point3 q = d.p + options_.stock_mm * n;
-    // What stands higher than the ball's radius was not cut at all.
-    const auto h = sweep_.entry(q, n, -2 * options_.radius_mm, options_.radius_mm);
-    return h ? *h : options_.radius_mm;
-  }
-
-  void gouge_at(double u, double v) {
-    const double h = height(u, v);
+    const double reach = 2 * options_.radius_mm;
+    const double h = sweep_.entry(q, n, -reach, reach, 0).value_or(reach);
     if (-h > report_.gouge_max_mm) {
       report_.gouge_max_mm = -h;
-      report_.gouge_at = evaluator_.point(u, v);
+      report_.gouge_at = d.p;
     }
+    return h;
   }
 
   ScallopReport::Ridge ridge(const std::vector<Station>& from, const TipPass& to) {
@@ -202,6 +238,11 @@ class Measure {
 
 ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
                               const ScallopOptions& options) {
+  bool usable = geom::validate(surface).ok() && options.radius_mm > 0 && std::isfinite(options.radius_mm) &&
+                std::isfinite(options.stock_mm) && std::isfinite(options.spacing_mm) && !passes.empty();
+  for (const TipPass& pass : passes)
+    for_chords(pass, [&](Point3 a, Point3 b) { usable = usable && finite(a) && finite(b); });
+  if (!usable) return {};
   return Measure(surface, passes, options).run();
 }
 

@@ -43,7 +43,9 @@ struct ScallopReport {
 };
 
 /// For every sample q of the surface with normal n: how far q + h n is left uncovered by all balls swept
-/// along the passes (h > 0 left standing, h < 0 cut away).
+/// along the passes (h > 0 left standing, h < 0 cut away), up to 2 R either way. The ridges are walked from
+/// each pass to the next; cuts are looked for there and on a grid over the whole surface. No samples: an
+/// invalid surface, no pass, or numbers that are not finite and positive.
 ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
                               const ScallopOptions& options);
 

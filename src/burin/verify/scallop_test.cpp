@@ -75,12 +75,12 @@ TEST(Sweep, EntersLikeBruteForce) {
     return false;
   };
   int hits = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const Point3 q{number(random), number(random), number(random)};
     const Vec3 n = unit(Vec3{number(random), number(random), number(random)});
     const auto h = sweep.entry(q, n, -2, 5);
     double first = 1e9;
-    for (double x = -2; x <= 5; x += 1e-3)
+    for (double x = -2; x <= 5; x += 5e-3)
       if (inside(q + x * n)) {
         first = x;
         break;
@@ -91,9 +91,9 @@ TEST(Sweep, EntersLikeBruteForce) {
     }
     ++hits;
     if (first == 1e9) continue;  // grazed between two samples
-    EXPECT_NEAR(*h, first, 1.001e-3);
+    EXPECT_NEAR(*h, first, 5.001e-3);
   }
-  EXPECT_GT(hits, 50);
+  EXPECT_GT(hits, 8);
 }
 
 TEST(Scallop, PlaneHasTheClosedForm) {
@@ -129,10 +129,136 @@ TEST(Scallop, CylinderHasTheClosedForm) {
   const double expected =
       (rho + radius) * std::cos(angle / 2) - std::sqrt(radius * radius - half * half) - rho;
   for (const auto& ridge : report.ridges) {
-    // The feet are found within 1e-6 mm, the ridge within 2e-5 of the side step.
-    EXPECT_NEAR(ridge.min_mm, expected, 3e-6);
-    EXPECT_NEAR(ridge.max_mm, expected, 3e-6);
+    EXPECT_NEAR(ridge.min_mm, expected, 1e-7);
+    EXPECT_NEAR(ridge.max_mm, expected, 1e-7);
   }
+}
+
+/// Where two balls of radius `ball` meet whose centres lie at half the angle on either side of a circle of
+/// radius `rho`, inside or outside of it: height over the circle.
+double cusp(double rho, double ball, double angle, bool inside) {
+  const double r = inside ? rho - ball : rho + ball, half = r * std::sin(angle / 2);
+  const double root = std::sqrt(ball * ball - half * half);
+  return inside ? rho - r * std::cos(angle / 2) - root : r * std::cos(angle / 2) - root - rho;
+}
+
+TEST(Scallop, InsideOfACylinder) {
+  const double rho = 15, radius = 5, angle = 0.1;
+  std::vector<TipPass> passes;
+  for (int i = 0; i < 6; ++i) {
+    const double a = 1.2 + i * angle;
+    const Point3 tip =
+        Point3{(rho - radius) * std::cos(a), 0, -(rho - radius) * std::sin(a)} + Vec3{0, 0, -radius};
+    passes.push_back({{{tip, tip + Vec3{0, 30, 0}}}});
+  }
+  NurbsSurface s = half_cylinder(rho, 30);
+  for (geom::HPoint& h : s.points) h.z = -h.z;
+  const bool reversed = geom::normal(s, 1.0, 0.5).z < 0;
+  const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
+  ASSERT_EQ(report.ridges.size(), 5u);
+  for (const auto& ridge : report.ridges) {
+    EXPECT_NEAR(ridge.min_mm, cusp(rho, radius, angle, true), 1e-7);
+    EXPECT_NEAR(ridge.max_mm, cusp(rho, radius, angle, true), 1e-7);
+  }
+  EXPECT_LT(report.gouge_max_mm, 1e-9);
+}
+
+TEST(Scallop, AroundACylinderItIsThatOfAPlane) {
+  const double rho = 15, radius = 5, step = 1.5;
+  std::vector<TipPass> passes;
+  for (int i = 0; i < 5; ++i) {
+    std::vector<Point3> tips;
+    for (int k = 0; k <= 2000; ++k) {  // chords 6e-6 mm from the arc
+      const double a = geom::kPi * k / 2000;
+      tips.push_back({(rho + radius) * std::cos(a), 5 + i * step, (rho + radius) * std::sin(a) - radius});
+    }
+    passes.push_back({{tips}});
+  }
+  const NurbsSurface s = half_cylinder(rho, 30);
+  const bool reversed = geom::normal(s, 1.0, 0.5).z < 0;
+  const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
+  const double expected = radius - std::sqrt(radius * radius - step * step / 4);
+  ASSERT_EQ(report.ridges.size(), 4u);
+  EXPECT_NEAR(report.scallop_min_mm, expected, 2e-5);
+  EXPECT_NEAR(report.scallop_max_mm, expected, 2e-5);
+  EXPECT_LT(report.gouge_max_mm, 1e-5);
+}
+
+/// An eighth of a sphere with its pole at the top, where one edge has no length.
+NurbsSurface octant(double radius) {
+  NurbsSurface s;
+  s.degree_u = s.degree_v = 2;
+  s.count_u = s.count_v = 3;
+  s.knots_u = s.knots_v = {0, 0, 0, 1, 1, 1};
+  const double w = std::sqrt(0.5);
+  const double c[3][3] = {{1, 0, 1}, {1, 1, w}, {0, 1, 1}};  // a quarter circle
+  for (const auto& up : c)
+    for (const auto& around : c)
+      s.points.push_back(geom::homogeneous(
+          {radius * up[0] * around[0], radius * up[0] * around[1], radius * up[1]}, up[2] * around[2]));
+  return s;
+}
+
+TEST(Scallop, CirclesOfLatitudeOnASphere) {
+  const double rho = 20, radius = 4, angle = 0.07;
+  std::vector<TipPass> passes;
+  for (int i = 0; i < 8; ++i) {
+    const double up = 0.6 + i * angle, r = (rho + radius) * std::cos(up);
+    std::vector<Point3> tips;
+    for (int k = 0; k <= 2000; ++k) {
+      const double a = geom::kPi / 2 * k / 2000;
+      tips.push_back({r * std::cos(a), r * std::sin(a), (rho + radius) * std::sin(up) - radius});
+    }
+    passes.push_back({{tips}});
+  }
+  const NurbsSurface s = octant(rho);
+  const bool reversed = geom::normal(s, 0.5, 0.5).z < 0;
+  const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
+  ASSERT_EQ(report.ridges.size(), 7u);
+  for (const auto& ridge : report.ridges) {
+    EXPECT_NEAR(ridge.min_mm, cusp(rho, radius, angle, false), 1e-5);
+    EXPECT_NEAR(ridge.max_mm, cusp(rho, radius, angle, false), 1e-5);
+  }
+  EXPECT_LT(report.gouge_max_mm, 1e-5);
+}
+
+// A wall thinner than the ball: the tool on its other side does not cut this one.
+TEST(Scallop, TheOtherSideOfAThinWallIsNoGouge) {
+  const double rho = 0.5, radius = 3;
+  std::vector<TipPass> passes;
+  for (int i = 0; i <= 40; ++i) {
+    const double a = geom::kPi * i / 40;
+    const Point3 tip{(rho + radius) * std::cos(a), 0, (rho + radius) * std::sin(a) - radius};
+    passes.push_back({{{tip, tip + Vec3{0, 5, 0}}}});
+  }
+  const NurbsSurface s = half_cylinder(rho, 5);
+  const bool reversed = geom::normal(s, 1.0, 0.5).z < 0;
+  EXPECT_LT(measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed}).gouge_max_mm,
+            1e-9);
+}
+
+// A cut between the passes, where no contact lies: a short dip of the first pass alone would be one, this is
+// a link driven through the surface.
+TEST(Scallop, SeesACutAnywhereOnTheSurface) {
+  const double radius = 4;
+  std::vector<TipPass> passes = parallel_on_plane(radius, 0, 1, 3, 20);  // x from 0 to 2
+  passes.push_back({{{{15.3, 7.1, 0.5}, {15.3, 7.1, -0.08}, {15.3, 7.1, 0.5}}}});
+  const ScallopReport report =
+      measure_scallop(plane(20, 0), passes, {.radius_mm = radius, .spacing_mm = 0.1});
+  EXPECT_NEAR(report.gouge_max_mm, 0.08, 1e-3);
+  EXPECT_LT(distance(report.gouge_at, {15.3, 7.1, 0}), 0.2);
+}
+
+TEST(Scallop, NothingFromNothing) {
+  const auto passes = parallel_on_plane(4, 0, 1, 3, 20);
+  EXPECT_EQ(measure_scallop(plane(20, 0), {}, {.radius_mm = 4}).samples, 0u);
+  EXPECT_EQ(measure_scallop(plane(20, 0), passes, {.radius_mm = 0}).samples, 0u);
+  EXPECT_EQ(measure_scallop(plane(20, 0), passes, {.radius_mm = std::nan("")}).samples, 0u);
+  EXPECT_EQ(measure_scallop({}, passes, {.radius_mm = 4}).samples, 0u);
+  const auto few =
+      measure_scallop(plane(20, 0), passes, {.radius_mm = 4, .spacing_mm = 1e-6, .max_samples = 20'000});
+  EXPECT_GT(few.samples, 1000u);
+  EXPECT_LT(few.samples, 25'000u);
 }
 
 TEST(Scallop, StockMovesTheSurface) {

@@ -12,7 +12,8 @@ using geom::Box3;
 using geom::Point3;
 using geom::Vec3;
 
-constexpr std::uint32_t kLeaf = 8;
+constexpr std::uint32_t kLeaf = 4;
+constexpr double kRounding = 1e-12;  // of the half diagonal of a box, as a bound
 
 double middle(const Sweep::Segment& s, int axis) {
   return axis == 0 ? s.a.x + s.b.x : axis == 1 ? s.a.y + s.b.y : s.a.z + s.b.z;
@@ -22,6 +23,11 @@ double middle(const Sweep::Segment& s, int axis) {
 struct Span {
   double in = 0, out = -1;
 };
+Span hull(Span a, Span b) {
+  if (a.in > a.out) return b;
+  if (b.in > b.out) return a;
+  return {std::min(a.in, b.in), std::max(a.out, b.out)};
+}
 Span through_ball(Point3 q, Vec3 n, Point3 c, double r) {
   const Vec3 d = c - q;
   const double b = dot(d, n), disc = b * b - dot(d, d) + r * r;
@@ -53,25 +59,14 @@ Span through_cylinder(Point3 q, Vec3 n, const Sweep::Segment& s, double r) {
   return {std::max(in, std::min(h0, h1)), std::min(out, std::max(h0, h1))};
 }
 
-Point3 nearest_in(const Box3& box, Point3 p) {
-  return {std::clamp(p.x, box.lo.x, box.hi.x), std::clamp(p.y, box.lo.y, box.hi.y),
-          std::clamp(p.z, box.lo.z, box.hi.z)};
-}
-double squared_distance(Point3 p, const Box3& box) {
-  const Vec3 d = p - nearest_in(box, p);
-  return dot(d, d);
-}
-
-/// Whether every place of the box is farther than r from all q + h n with from <= h <= to. The distance is
-/// convex in h: where it still falls at `to` it is least there. Else the ball about the box says something.
-/// False also means "not known".
-bool out_of_reach(Point3 q, Vec3 n, double from, double to, const Box3& box, double r) {
-  const Point3 p = q + to * n;
-  const Vec3 away = p - nearest_in(box, p);
-  if (dot(away, n) <= 0) return dot(away, away) > r * r;
-  const Point3 middle = lerp(box.lo, box.hi, 0.5);
-  const double far = distance(middle, q + std::clamp(dot(middle - q, n), from, to) * n);
-  return far > r + 0.5 * box.diagonal();
+/// Bounds of where the line enters and leaves balls whose centres lie in a sphere; in > out: it meets none.
+Span through_balls(Point3 q, Vec3 n, Point3 middle, double spread, double r) {
+  const Vec3 d = middle - q;
+  const double along = dot(d, n);
+  const double aside = std::max(0.0, std::sqrt(std::max(0.0, dot(d, d) - along * along)) - spread);
+  if (aside > r) return {};
+  const double half = std::sqrt((r - aside) * (r + aside));
+  return {along - spread - half, along + spread + half};
 }
 
 }  // namespace
@@ -88,7 +83,8 @@ void Sweep::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
     box.add(segments_[i].b);
     centers.add(lerp(segments_[i].a, segments_[i].b, 0.5));
   }
-  nodes_[node].box = box;
+  if (begin < end) nodes_[node].middle = lerp(box.lo, box.hi, 0.5);
+  nodes_[node].spread = 0.5 * box.diagonal() * (1 + kRounding);
   if (end - begin <= kLeaf) {
     nodes_[node].first = begin;
     nodes_[node].count = end - begin;
@@ -107,33 +103,36 @@ void Sweep::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
   split(child + 1, half, end);
 }
 
-std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to) const {
+std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to, double leaves_at) const {
   if (segments_.empty()) return std::nullopt;
   double best = to;
   bool found = false;
   const auto take = [&](Span span) {
     const double in = std::max(span.in, from);
-    if (in <= span.out && in <= best) best = in, found = true;
+    if (in <= span.out && in <= best && span.out >= leaves_at) best = in, found = true;
   };
-  // Halving needs at most 32 levels; two children each wait at once.
+  // Halving needs at most 32 levels; two children each wait at once, the one with the lower bound is next.
   std::array<std::uint32_t, 80> stack{};
   std::size_t depth = 0;
   stack[depth++] = 0;
+  const auto bounds = [&](const Node& node) {
+    return through_balls(q, n, node.middle, node.spread, radius_);
+  };
   while (depth > 0) {
     const Node& node = nodes_[stack[--depth]];
-    if (out_of_reach(q, n, from, best, node.box, radius_)) continue;
+    const Span span = bounds(node);
+    if (std::max(span.in, from) > std::min(span.out, best) || span.out < leaves_at) continue;
     if (node.count == 0) {
-      // The nearer child first: what it gives rules most of the other out.
-      const bool first =
-          squared_distance(q, nodes_[node.first].box) <= squared_distance(q, nodes_[node.first + 1].box);
-      stack[depth++] = node.first + (first ? 1 : 0);
-      stack[depth++] = node.first + (first ? 0 : 1);
+      const bool second_first = bounds(nodes_[node.first + 1]).in < bounds(nodes_[node.first]).in;
+      stack[depth++] = node.first + (second_first ? 0 : 1);
+      stack[depth++] = node.first + (second_first ? 1 : 0);
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      take(through_ball(q, n, segments_[i].a, radius_));
-      take(through_ball(q, n, segments_[i].b, radius_));
-      take(through_cylinder(q, n, segments_[i], radius_));
+      // A capsule is convex: what the line has of its three parts is one span.
+      take(
+          hull(hull(through_ball(q, n, segments_[i].a, radius_), through_ball(q, n, segments_[i].b, radius_)),
+               through_cylinder(q, n, segments_[i], radius_)));
     }
   }
   return found ? std::optional(best) : std::nullopt;

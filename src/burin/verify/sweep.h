@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -19,12 +20,15 @@ class Sweep {
   Sweep(std::vector<Segment> segments, double radius);
 
   /// The smallest h in [from, to] for which q + h n (n a unit vector) lies in the volume, nothing when there
-  /// is none.
-  std::optional<double> entry(geom::Point3 q, geom::Vec3 n, double from, double to) const;
+  /// is none. Only capsules count that the line leaves at `leaves_at` or later: with 0, a ball on the far
+  /// side of a thin wall is no cut into the near one.
+  std::optional<double> entry(geom::Point3 q, geom::Vec3 n, double from, double to,
+                              double leaves_at = -std::numeric_limits<double>::infinity()) const;
 
  private:
   struct Node {
-    geom::Box3 box;                      ///< of the segments below
+    geom::Point3 middle;                 ///< of the box of the segments below
+    double spread = 0;                   ///< they lie within this of it
     std::uint32_t first = 0, count = 0;  ///< leaf: segments; inner (count 0): children first and first + 1
   };
   void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end);
