@@ -268,12 +268,17 @@ std::string html(const CycleArgs& args, const job::CycleJob& job, const Servo& s
     group.plan = &run.plan;
     group.displacement = run.group.displacement;
     group.title = run.title;
+    group.tool_diameter_mm = run.group.tool_diameter;
+    group.stock_mm = run.group.stock;
+    group.feed_mm_min = run.group.feed;
+    group.scallop_mm = run.group.scallop;
     picture.groups.push_back(std::move(group));
     picture.commanded_feed_mm_min = std::max(picture.commanded_feed_mm_min, run.group.feed);
     picture.scallop_mm = std::max(picture.scallop_mm, run.group.scallop);
   }
   picture.setpoints = &servo.setpoints;
   picture.period_s = args.limits.period_s;
+  picture.accel_limit_mm_s2 = args.limits.accel_mm_s2;
   picture.diagnostics = &session.diagnostics;
   picture.figures = figures(session);
   picture.nc_text = text;

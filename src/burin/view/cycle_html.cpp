@@ -21,9 +21,9 @@ namespace {
 
 using nlohmann::json;
 
-// Together these keep a page below 6 MB: a point of a mesh takes 12 characters, of the way 32.
+// Together these keep a page below 6 MB: a point of a mesh takes 12 characters, of the way 40.
 constexpr std::size_t kMeshPoints = 90'000;
-constexpr std::size_t kTrackPoints = 90'000;
+constexpr std::size_t kTrackPoints = 80'000;
 constexpr std::size_t kRows = 10'000;
 constexpr std::size_t kProgramBytes = 500'000;
 constexpr std::size_t kWarnings = 2'000;
@@ -45,6 +45,11 @@ std::uint16_t scaled(double v, double lo, double size, double steps) {
 }
 
 constexpr double kSteps16 = 65535, kSteps15 = 32767, kSteps7 = 127;
+
+/// Of -1 to 1.
+std::int16_t signed16(double v) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(v, -1.0, 1.0) * kSteps15));
+}
 
 /// Points as 16 bit numbers in the box of the mesh, normals as 8 bit.
 json mesh_json(const SurfaceMesh& mesh) {
@@ -212,18 +217,18 @@ json track_json(const Track& track, geom::Point3 origin) {
   std::vector<float> xyz;
   std::vector<std::uint32_t> index;
   std::vector<std::uint16_t> feed, axis, lift;
-  std::vector<std::int16_t> tangential;
+  std::vector<std::int16_t> tangential, normals;
+  bool touches = false;
   for (const TrackPoint& p : track.points) {
     const geom::Vec3 d = p.p - origin;
     for (const double c : {d.x, d.y, d.z}) xyz.push_back(static_cast<float>(c));
     index.push_back(p.index);
+    for (const double c : {p.normal.x, p.normal.y, p.normal.z}) normals.push_back(signed16(c));
+    touches = touches || p.normal.z != 1;
     feed.push_back(scaled(p.feed, 0, track.feed_max, kSteps16));
     axis.push_back(scaled(p.axis, 0, track.axis_max, kSteps16));
     lift.push_back(scaled(p.lift, 0, track.lift_max, kSteps16));
-    tangential.push_back(static_cast<std::int16_t>(
-        track.tangential_max > 0
-            ? std::lround(std::clamp(p.tangential / track.tangential_max, -1.0, 1.0) * kSteps15)
-            : 0));
+    tangential.push_back(signed16(track.tangential_max > 0 ? p.tangential / track.tangential_max : 0));
   }
   std::vector<std::int32_t> runs;
   for (const TrackRun& r : track.runs) {
@@ -249,6 +254,7 @@ json track_json(const Track& track, geom::Point3 origin) {
     t["axis"] = base64(axis);
     t["tangential"] = base64(tangential);
   }
+  if (touches) t["normal"] = base64(normals);
   if (track.lift_max > 0) t["lift"] = base64(lift);
   return t;
 }

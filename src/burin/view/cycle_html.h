@@ -19,7 +19,7 @@ struct CycleGroup {
   std::vector<std::string> patch_names;     ///< "N10"
   const geom::Composite* composite = nullptr;
   const cycle::SurfacePlan* plan = nullptr;
-  /// Of a repeat. Patches, composite and plan are without it, the setpoints with it.
+  /// Of a repeat. Patches and composite are without it, plan and setpoints with it.
   geom::Vec3 displacement;
   std::string title;            ///< "G106.2 I2 E1, N10 to N90"
   double tool_diameter_mm = 0;  ///< the cutter that is drawn; 0: a mark without size
@@ -32,8 +32,8 @@ struct CyclePicture {
   std::string title;
   std::string command_line;
   std::vector<CycleGroup> groups;
-  /// Of the whole program, in the order of the groups; `surface` counts in a group or over all groups.
-  /// Without them the motions of the plans are drawn and there are no charts over time.
+  /// Of the whole program, in the order of the groups; `surface` counts over all different composites (or in
+  /// its group). Without them the motions of the plans are drawn and there are no charts over time.
   const std::vector<servo::Setpoint>* setpoints = nullptr;
   double period_s = 0.001;
   double commanded_feed_mm_min = 0;

@@ -119,7 +119,7 @@ TEST(TrackLabels, EverySetpointIsTheMotionItCameFrom) {
     if (l.kind != cover.truth[i] && !border) ++wrong;
     if (cover.truth[i] == TrackKind::cut) {
       EXPECT_EQ(l.kind, TrackKind::cut);
-      EXPECT_EQ(l.group, cover.setpoints[i].surface);
+      EXPECT_EQ(l.group, i < cover.setpoints.size() / 2 ? 0 : 1);
       EXPECT_EQ(l.surface, 0);
       EXPECT_EQ(l.pass, cover.setpoints[i].pass);
     }
@@ -127,17 +127,27 @@ TEST(TrackLabels, EverySetpointIsTheMotionItCameFrom) {
   EXPECT_EQ(wrong, 0u);
 }
 
-TEST(TrackLabels, SurfacesMayCountInTheirGroup) {
-  Cover cover(6);
-  std::vector<int> group;
-  for (auto& s : cover.setpoints) {
-    group.push_back(s.surface);
-    if (s.surface == 1) s.surface = 0;
-  }
-  const TrackLabels labels = label_setpoints(cover.picture());
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    if (group[i] < 0) continue;
-    ASSERT_EQ(labels.labels[labels.of_sample[i]].group, group[i]) << i;
+/// Three machinings of different composites, or of one: numbers over the program and in the group.
+TEST(TrackLabels, SurfacesCountOverTheProgramOrInTheirGroup) {
+  const Cover cover(6);
+  geom::Composite other = cover.composite;
+  CyclePicture picture = cover.picture();
+  picture.groups.push_back(picture.groups[0]);
+  picture.groups[2].composite = &other;
+  const std::size_t n = cover.setpoints.size();
+  for (const int number : {0, 1}) {
+    std::vector<servo::Setpoint> setpoints = cover.setpoints;
+    for (std::size_t i = 0; i < n / 2; ++i) {
+      setpoints.push_back(cover.setpoints[i]);
+      if (setpoints.back().surface == 0) setpoints.back().surface = number;
+    }
+    picture.setpoints = &setpoints;
+    const TrackLabels labels = label_setpoints(picture);
+    for (std::size_t i = 0; i < setpoints.size(); ++i) {
+      if (setpoints[i].pass < 0) continue;
+      ASSERT_EQ(labels.labels[labels.of_sample[i]].group, i < n / 2 ? 0 : i < n ? 1 : 2) << i;
+      ASSERT_EQ(labels.labels[labels.of_sample[i]].surface, 0);
+    }
   }
 }
 
@@ -250,6 +260,29 @@ TEST(Track, LiftIsTheHeightAboveWhereTheSurfaceWouldHaveTheTip) {
   EXPECT_GT(lifted, 10u);
   EXPECT_GT(flat, 10u);
   EXPECT_NEAR(track.lift_max, sample::kBump, 0.01);
+}
+
+TEST(Track, TheBallTouchesTheSurface) {
+  const Cover cover(12);
+  const Track track = make_track(cover.picture());
+  std::size_t cuts = 0;
+  for (std::size_t r = 0; r < track.runs.size(); ++r) {
+    const TrackRun& run = track.runs[r];
+    const std::size_t end = r + 1 < track.runs.size() ? track.runs[r + 1].first : track.points.size();
+    for (std::size_t i = run.first; i < end; ++i) {
+      const TrackPoint& p = track.points[i];
+      if (run.label.kind != TrackKind::cut) {
+        EXPECT_EQ(p.normal, (geom::Vec3{0, 0, 1}));
+        continue;
+      }
+      if (run.label.lift_max > 0) continue;
+      // The sample's u, v are the place of the contact.
+      const geom::Point3 c = p.p + sample::kRadius * (geom::Vec3{0, 0, 1} - p.normal);
+      EXPECT_NEAR(c.z, sample::height(c.x - 110 * run.label.group, c.y), 0.02);
+      ++cuts;
+    }
+  }
+  EXPECT_GT(cuts, 100u);
 }
 
 TEST(Track, WithoutSetpointsTheMotionsAreDrawn) {

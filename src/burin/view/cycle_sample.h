@@ -90,7 +90,7 @@ inline Where at(const char* block) {
 struct Cover {
   std::vector<geom::NurbsSurface> patches;
   geom::Composite composite;
-  cycle::SurfacePlan plan;
+  cycle::SurfacePlan plan, repeat;
   std::vector<servo::Setpoint> setpoints;
   std::vector<TrackKind> truth;  ///< of every setpoint
   Diagnostics diagnostics;
@@ -100,11 +100,15 @@ struct Cover {
     for (int k = 0; k < 9; ++k) patches.push_back(patch(k % 3, k / 3));
     composite = join_by_hand(patches);
     make_plan(nodes_every);
+    repeat = plan;
+    for (cycle::Motion& m : repeat.motions) {
+      for (geom::QuinticNode& node : m.path.nodes) node.p = node.p + geom::Vec3{110, 0, 0};
+    }
     geom::Point3 here{-10, -10, 60};
     here = move(here, {0, 0, 60}, kRapid, TrackKind::program);
-    here = group(here, {}, 0);
+    here = group(here, plan);
     here = move(here, {110, 0, 60}, kRapid, TrackKind::program);
-    here = group(here, {110, 0, 0}, 1);
+    here = group(here, repeat);
     move(here, {-10, -10, 60}, kRapid, TrackKind::program);
     diagnostics.info("modal_g91", "N50 G91 is modal: N70 moves by 40 (G90 would move to 40)", at("N50"));
     diagnostics.add({Severity::left_out, "lifted", "path 8 </script><b>is lifted by 0.4 mm", at("N10"),
@@ -120,7 +124,7 @@ struct Cover {
       group.patches = patches;
       for (int k = 0; k < 9; ++k) group.patch_names.push_back("N" + std::to_string(10 * (k + 1)));
       group.composite = &composite;
-      group.plan = &plan;
+      group.plan = g ? &repeat : &plan;
       group.displacement = {110.0 * g, 0, 0};
       group.title = g ? "repeat, moved by X110" : "G106.2 I2 E1, N10 to N90";
       group.tool_diameter_mm = 2 * kRadius;
@@ -235,14 +239,14 @@ struct Cover {
     return to;
   }
 
-  geom::Point3 group(geom::Point3 here, geom::Vec3 shift, int surface) {
-    for (const cycle::Motion& m : plan.motions) {
+  geom::Point3 group(geom::Point3 here, const cycle::SurfacePlan& of) {
+    for (const cycle::Motion& m : of.motions) {
       std::vector<geom::Point3> points, uv;
       const int per = m.pass >= 0 ? 40 : 1;
       for (std::size_t i = 0; i + 1 < m.path.nodes.size(); ++i) {
         for (int k = i ? 1 : 0; k <= per; ++k) {
           const double x = static_cast<double>(k) / per;
-          points.push_back(geom::evaluate_piece(m.path, i, x).p + shift);
+          points.push_back(geom::evaluate_piece(m.path, i, x).p);
           if (m.pass >= 0) uv.push_back(geom::evaluate_piece(m.uv, i, x).p);
         }
       }
@@ -251,7 +255,7 @@ struct Cover {
                              : m.kind == cycle::MotionKind::plunge ? TrackKind::plunge
                              : m.kind == cycle::MotionKind::link   ? TrackKind::link
                                                                    : TrackKind::cut;
-      travel(points, uv, rapid ? kRapid : kFeed, kind, m.pass >= 0 ? surface : -1, m.pass);
+      travel(points, uv, rapid ? kRapid : kFeed, kind, m.surface, m.pass);
       here = points.back();
     }
     return here;

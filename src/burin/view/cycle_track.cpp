@@ -206,25 +206,28 @@ std::vector<std::uint32_t> choose(const Samples& s, const Extent& e, std::size_t
   return kept;
 }
 
-/// How far the tip is above where its surface alone would have it (R, L and the side of the normal as the
-/// planner has them).
-class Lift {
+/// Where the ball touches, and how far the tip is above where its surface alone would have it (R, L and the
+/// side of the normal as the planner has them).
+class Contact {
  public:
-  explicit Lift(const CyclePicture& picture) : picture_(picture) {}
+  explicit Contact(const CyclePicture& picture) : picture_(picture) {}
 
-  double of(const TrackLabel& label, const TrackSample& s) {
-    if (!(label.lift_max > 0)) return 0;
-    if (label.group < 0 || label.surface < 0 || !std::isfinite(s.u) || !std::isfinite(s.v))
-      return label.lift_max;
+  void add_to(TrackPoint& point, const TrackLabel& label, const TrackSample& s) {
+    point.lift = label.lift_max;
+    if (label.group < 0 || label.surface < 0 || !std::isfinite(s.u) || !std::isfinite(s.v)) return;
     const CycleGroup& group = picture_.groups[static_cast<std::size_t>(label.group)];
     const auto surface = static_cast<std::size_t>(label.surface);
     if (!(group.tool_diameter_mm > 0) || !group.composite || surface >= group.composite->surfaces.size())
-      return label.lift_max;
+      return;
     select(label.group, surface);
     const geom::SurfaceDerivatives d = evaluator_->derivatives(s.u, s.v);
+    const geom::Vec3 n = side_ * geom::normal(d);
+    if (!(geom::dot(n, n) > 0)) return;
+    point.normal = n;
+    if (!(label.lift_max > 0)) return;
     const double r = 0.5 * group.tool_diameter_mm;
-    const double tip = d.p.z + side_ * (r + group.stock_mm) * geom::normal(d).z - r + group.displacement.z;
-    return std::clamp(finite(s.p.z - tip), 0.0, label.lift_max);
+    const double tip = d.p.z + (r + group.stock_mm) * n.z - r + group.displacement.z;
+    point.lift = std::clamp(finite(s.p.z - tip), 0.0, label.lift_max);
   }
 
  private:
@@ -327,7 +330,7 @@ Track make_track(const CyclePicture& picture, const TrackLimits& limits) {
   track.tangential_max = e.tangential;
   track.axis_max = e.axis;
   const std::map<PassKey, int> rows = make_rows(picture, s, limits.most_rows, track);
-  Lift lift(picture);
+  Contact contact(picture);
   std::uint32_t before = ~0u;
   for (const std::uint32_t i : choose(s, e, limits.most_points, track)) {
     const TrackSample p = s.at(i);
@@ -338,12 +341,8 @@ Track make_track(const CyclePicture& picture, const TrackLimits& limits) {
           {track.points.size(), label, label.kind == TrackKind::cut && row != rows.end() ? row->second : -1});
       before = s.label_index(i);
     }
-    TrackPoint point{static_cast<std::uint32_t>(s.position(i)),
-                     p.p,
-                     p.feed,
-                     s.tangential(i),
-                     s.axis(i),
-                     lift.of(label, p)};
+    TrackPoint point{static_cast<std::uint32_t>(s.position(i)), p.p, p.feed, s.tangential(i), s.axis(i)};
+    contact.add_to(point, label, p);
     track.lift_max = std::max(track.lift_max, point.lift);
     track.points.push_back(point);
   }

@@ -40,6 +40,8 @@ struct TrackPoint {
   geom::Point3 p;
   double feed = 0, tangential = 0, axis = 0;  ///< tip speed, its change, largest acceleration of an axis
   double lift = 0;                            ///< above where the surface alone would have the tip
+  /// Of the surface towards the tool; up where none is known. The ball touches at p + R (k - normal).
+  geom::Vec3 normal{0, 0, 1};
 };
 
 /// Points `first` .. end of the next run; the segment that ends in a point is of the point's run.
@@ -73,7 +75,7 @@ struct Track {
 };
 
 struct TrackLimits {
-  std::size_t most_points = 100'000;
+  std::size_t most_points = 80'000;
   std::size_t most_rows = 10'000;
 };
 

@@ -89,7 +89,7 @@ class Labeller {
   }
 
   void collect(const CyclePicture& picture) {
-    int offset = 0;
+    std::vector<int> offsets = first_surfaces(picture);
     for (std::size_t g = 0; g < picture.groups.size(); ++g) {
       const CycleGroup& group = picture.groups[g];
       if (!group.plan) continue;
@@ -99,26 +99,38 @@ class Labeller {
         const bool cut = m.kind == MotionKind::cut && m.pass >= 0;
         if (cut) {
           in_group_[{m.surface, m.pass}].push_back(items_.size());
-          in_program_[{m.surface + offset, m.pass}].push_back(items_.size());
+          in_program_[{m.surface + offsets[g], m.pass}].push_back(items_.size());
         }
         items_.push_back({static_cast<std::uint32_t>(out_.labels.size() - 1), static_cast<int>(g), cut,
                           rough_length(m.path)});
       }
-      offset += group.composite ? static_cast<int>(group.composite->surfaces.size()) : 0;
     }
+  }
+
+  /// Number of the first surface of every group: repeats have those of the group they repeat.
+  static std::vector<int> first_surfaces(const CyclePicture& picture) {
+    std::vector<int> first;
+    int next = 0;
+    for (std::size_t g = 0; g < picture.groups.size(); ++g) {
+      const geom::Composite* composite = picture.groups[g].composite;
+      std::size_t same = 0;
+      while (same < g && !(composite && picture.groups[same].composite == composite)) ++same;
+      first.push_back(same < g ? first[same] : next);
+      if (same == g && composite) next += static_cast<int>(composite->surfaces.size());
+    }
+    return first;
   }
 
   /// The first cut of that surface and pass after `before`.
   std::size_t next_item(const Setpoint& s, std::size_t before) const {
     const std::size_t from = before == none ? 0 : before + 1;
-    std::size_t best = none;
     for (const auto* index : {&in_program_, &in_group_}) {
       const auto found = index->find(Key{s.surface, s.pass});
       if (found == index->end()) continue;
       const auto item = std::lower_bound(found->second.begin(), found->second.end(), from);
-      if (item != found->second.end()) best = std::min(best, *item);
+      if (item != found->second.end()) return *item;
     }
-    return best;
+    return none;
   }
 
   /// Cuts that follow without a gap are one run of setpoints.
@@ -228,7 +240,7 @@ MotionSamples sample_motions(const CyclePicture& picture, std::size_t most) {
     for (const cycle::Motion& m : group.plan->motions) {
       if (m.path.empty()) continue;
       const TrackLabel label{kind_of(m.kind), static_cast<int>(g), m.surface, m.pass, m.lift_max};
-      const geom::Point3 start = m.path.start() + group.displacement;
+      const geom::Point3 start = m.path.start();
       if (out.samples.empty() || distance(out.samples.back().p, start) > kSamePlace_mm) {
         out.labels.labels.push_back({});  // a way of the program from the group before
         add(start, {}, false);
@@ -240,7 +252,7 @@ MotionSamples sample_motions(const CyclePicture& picture, std::size_t most) {
         const std::size_t steps = line ? 1 : per_piece;
         for (std::size_t k = 1; k <= steps; ++k) {
           const double x = static_cast<double>(k) / static_cast<double>(steps);
-          add(geom::evaluate_piece(m.path, i, x).p + group.displacement,
+          add(geom::evaluate_piece(m.path, i, x).p,
               has_uv ? geom::evaluate_piece(m.uv, i, x).p : geom::Point3{}, has_uv);
         }
       }
