@@ -223,7 +223,7 @@ std::vector<Cluster> clusters_of(std::vector<PieceKnot> knots, double near, int 
     }
     Cluster& cluster = out.back();
     cluster.multiplicity[knot.piece] += knot.multiplicity;
-    if (knot.order < cluster.order) {
+    if (knot.order < cluster.order && (out.size() < 2 || knot.value > out[out.size() - 2].value)) {
       cluster.order = knot.order;
       cluster.value = knot.value;
     }
@@ -367,6 +367,18 @@ Result<void> check_effort(const Pieces& pieces) {
   return Error{ErrorCode::range, "one surface of them would need too many knots", {}};
 }
 
+/// Numbers far out of proportion can make knots fall together in one piece and not in the other.
+Result<void> check_knots(const Pieces& pieces) {
+  for (int y = 0; y < pieces.height; ++y) {
+    for (int x = 0; x < pieces.width; ++x) {
+      const NurbsSurface& s = pieces.at(x, y);
+      if (s.knots_u == pieces.at(x, 0).knots_u && s.knots_v == pieces.at(0, y).knots_v) continue;
+      return Error{ErrorCode::geometry, "their knots cannot be made the same", {}};
+    }
+  }
+  return {};
+}
+
 Member member_of(const Source& source, const Block& block, Interval x, Interval y) {
   Member m;
   m.patch = source.patch;
@@ -419,6 +431,7 @@ Result<JoinedSurface> assemble(const std::vector<Source>& sources, const CellGra
     }
     if (auto ok = check_size(pieces); !ok) return std::move(ok).error();
   }
+  if (auto ok = check_knots(pieces); !ok) return std::move(ok).error();
   level_weights(grid, pieces);
 
   JoinedSurface out;

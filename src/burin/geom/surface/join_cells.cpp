@@ -258,6 +258,11 @@ bool connect_contact(const Cutter& cutter, const Layout& layout, const Contact& 
     link.inner = c.inner;
     const int a = layout.on_side(c.a, c.side_a, k), b = layout.on_side(c.b, c.side_b, std::min(b0, b1));
     if (a == b && c.side_a == c.side_b) continue;
+    if (graph.cells[static_cast<std::size_t>(a)].links[static_cast<std::size_t>(c.side_a)].cell >= 0 ||
+        graph.cells[static_cast<std::size_t>(b)].links[static_cast<std::size_t>(c.side_b)].cell >= 0) {
+      all = false;  // contacts that overlap by less than they were allowed to
+      continue;
+    }
     connect(graph, a, c.side_a, b, c.side_b, link);
   }
   return all;

@@ -22,6 +22,8 @@ constexpr double kShortest = 4;
 constexpr double kRounding = 1e-10;
 /// The same for parameters of knots that were found on the other curve.
 constexpr double kPieceRounding = 1e-8;
+/// More uneven projective maps (factors beyond a thousand) would spoil the weights.
+constexpr double kLeastFraction = 1e-3;
 /// A projective map replaces the plain linear one when it lowers the gap to this part.
 constexpr double kBetter = 0.01;
 
@@ -147,7 +149,7 @@ std::optional<Match> fit(const EdgeCurve& a, const EdgeCurve& b, Match m, double
     const auto at = near_in(b, middle, std::min(m.b0, m.b1), std::max(m.b0, m.b1), tolerance);
     if (!at && !plain) return {};
     const double f = at ? (*at - m.b0) / (m.b1 - m.b0) : 0.5;
-    if (f > 0 && f < 1) {
+    if (f > kLeastFraction && f < 1 - kLeastFraction) {
       Match bent = m;
       bent.alpha = f / (1 - f);
       bent.gap_mm = gap_of(a, b, bent, tolerance);
