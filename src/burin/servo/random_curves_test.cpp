@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <limits>
 
 #include "burin/servo/measure.h"
@@ -47,29 +48,31 @@ TEST(Plan, RandomCurvesKeepTheirLimits) {
   const int n = cases();
   std::size_t setpoints = 0, slowed = 0;
   double worst_accel = 0, worst_jerk = 0, worst_chord = 0, worst_feed = 0;
-  for (int i = 0; i < n; ++i) {
-    test::RandomCurves random(static_cast<std::uint64_t>(i) + 1);
+  // Seeds beyond the usual number that once failed (chord error between the planner's samples).
+  constexpr std::uint64_t kFound[] = {10962, 14711, 20238, 21513};
+  for (int i = 0; i < n + static_cast<int>(std::size(kFound)); ++i) {
+    const std::uint64_t seed = i < n ? static_cast<std::uint64_t>(i) + 1 : kFound[i - n];
+    test::RandomCurves random(seed);
     const auto stretches = random.curve();
     const Limits limits = random.limits();
     Diagnostics diagnostics;
     const auto made = plan(stretches, limits, diagnostics);
-    ASSERT_TRUE(made.ok()) << "seed " << i + 1 << ": " << made.error().message;
+    ASSERT_TRUE(made.ok()) << "seed " << seed << ": " << made.error().message;
     slowed += diagnostics.count("servo_slowed");
     const auto s = run(*made);
     const Quality q = measure(*made, s);
     const double t = limits.period_s, noise = rounding(s);
-    ASSERT_LE(q.accel_max_mm_s2, limits.accel_mm_s2 * (1 + 1e-12) + 4 * noise / (t * t)) << "seed " << i + 1;
-    ASSERT_LE(q.jerk_max_mm_s3, limits.jerk_mm_s3 * (1 + 1e-12) + 8 * noise / (t * t * t))
-        << "seed " << i + 1;
-    EXPECT_LE(q.chord_error_max_mm, limits.chord_error_mm + noise) << "seed " << i + 1;
-    EXPECT_LT(q.feed_fluctuation_max, 1e-6 + 4 * noise / smallest_step(s, t)) << "seed " << i + 1;
+    ASSERT_LE(q.accel_max_mm_s2, limits.accel_mm_s2 * (1 + 1e-12) + 4 * noise / (t * t)) << "seed " << seed;
+    ASSERT_LE(q.jerk_max_mm_s3, limits.jerk_mm_s3 * (1 + 1e-12) + 8 * noise / (t * t * t)) << "seed " << seed;
+    EXPECT_LE(q.chord_error_max_mm, limits.chord_error_mm + noise) << "seed " << seed;
+    EXPECT_LT(q.feed_fluctuation_max, 1e-6 + 4 * noise / smallest_step(s, t)) << "seed " << seed;
     double top = 0;
     for (const Stretch& stretch : stretches)
       top = std::max(top, stretch.feed_mm_min > 0 ? stretch.feed_mm_min : limits.rapid_mm_min);
-    for (const Setpoint& p : s) ASSERT_TRUE(p.feed_mm_min <= top * (1 + 1e-6)) << "seed " << i + 1;
+    for (const Setpoint& p : s) ASSERT_TRUE(p.feed_mm_min <= top * (1 + 1e-6)) << "seed " << seed;
     if (!stretches.empty()) {
       const geom::Point3 end = stretches.back().path.end();
-      EXPECT_LE(geom::distance({s.back().x, s.back().y, s.back().z}, end), 1e-9) << "seed " << i + 1;
+      EXPECT_LE(geom::distance({s.back().x, s.back().y, s.back().z}, end), 1e-9) << "seed " << seed;
     }
     EXPECT_EQ(s.front().feed_mm_min, 0);
     EXPECT_EQ(s.back().feed_mm_min, 0);

@@ -129,8 +129,8 @@ double RunPlanner::deviation(const double (&a)[3], const double (&b)[3], std::si
   return std::sqrt(d2);
 }
 
-/// Largest distance of the path from the chord between two setpoints, at the middle of each part and at up to
-/// kNodes nodes, relative to the limit.
+/// Largest distance of the path from the chord between two setpoints, relative to the limit: at the middle of
+/// each part and at up to kNodes nodes, and where that is near the limit at many more.
 double RunPlanner::chord_ratio(const Cursor& before, const Cursor& now) const {
   constexpr std::size_t kNodes = 8;
   double worst = 0;
@@ -142,6 +142,15 @@ double RunPlanner::chord_ratio(const Cursor& before, const Cursor& now) const {
       worst = std::max(worst, deviation(before.p, now.p, i, 1));
     worst = std::max({worst, deviation(before.p, now.p, before.piece, 0.5 * (before.x + 1)),
                       deviation(before.p, now.p, now.piece, 0.5 * now.x)});
+  }
+  constexpr double kNear = 0.7;
+  constexpr int kSamples = 8;
+  if (worst > kNear * limits_.chord_error_mm) {
+    for (std::size_t i = before.piece; i <= now.piece; ++i) {
+      const double x0 = i == before.piece ? before.x : 0, x1 = i == now.piece ? now.x : 1;
+      for (int k = 1; k <= kSamples; ++k)
+        worst = std::max(worst, deviation(before.p, now.p, i, x0 + (x1 - x0) * k / kSamples));
+    }
   }
   return worst / (limits_.chord_error_mm + rounding_);
 }
