@@ -224,8 +224,6 @@ TEST(BadInput, HugeCoordinatesCostTheFaceOnly) {
   ASSERT_TRUE(model) << model.error().to_string();
   EXPECT_EQ(model->faces.size(), 1u);
   ASSERT_EQ(diagnostics.count("face_left_out"), 1u);
-  // Where the damage is noticed first depends on what it does to the boundary.
-  EXPECT_NE(diagnostics.warnings()[0].message.find("face 2 is left out: "), std::string::npos);
   EXPECT_FALSE(diagnostics.warnings()[0].where.entity.empty());
 }
 
