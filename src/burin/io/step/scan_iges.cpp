@@ -194,6 +194,7 @@ class Scanner {
     check_counts(*type, *list, line);
     if (!failed() && (*type == 126 || *type == 128)) check_spline(*list, *type == 128, line);
     if (!failed() && *type == 504) check_edges(*list, line);
+    if (!failed() && *type == 514) check_shell(*list, line);
     if (!failed()) add_references(i / 2, *type, *list, number(a, 6).value_or(0), graph);
   }
 
@@ -345,6 +346,15 @@ class Scanner {
       if (std::find(kCurves.begin(), kCurves.end(), type) == kCurves.end() || start != 502 || end != 502)
         return fail("edge " + std::to_string(k + 1) + " of entity 504 is not a curve between vertices", line);
     }
+  }
+
+  /// The faces of a shell (514), each with its orientation.
+  void check_shell(const Values& v, int line) {
+    const auto count = static_cast<std::size_t>(integer(v, 1).value_or(0));
+    bool good = count > 0;
+    for (std::size_t k = 0; k < count; ++k)
+      good = good && type_at(integer(v, 2 + 2 * k).value_or(0)) == 510 && integer(v, 3 + 2 * k).has_value();
+    if (!good) fail("entity 514 does not name the faces of a shell", line);
   }
 
   /// Pointers to other entities of the types that readers follow by recursion.
