@@ -439,7 +439,7 @@ void add_surfaces(Cli& cli) {
       "  burin surfaces blade.step --list\n"
       "  burin surfaces blade.step --tool-diameter 8 --scallop 0.005 --feed 2000 -o blade.nc\n"
       "  burin surfaces die.igs --faces 12,14-19 --group E3 --method I1 -o cavity.nc\n"
-      "  burin surfaces hull.igs --up -Y --origin top --safety 25 -o - | burin cycle - -o hull.ngc\n",
+      "  burin surfaces hull.igs --up=-Y --origin top --safety 25 -o hull.nc\n",
       [args](Session& session) { return run_surfaces(*args, session); });
   app.add_option("part", args->part, "part, STEP or IGES (by content)")->required()->type_name("PART");
   add_part_options(app, *args);

@@ -6,6 +6,7 @@
 
 #include <random>
 
+#include "burin/io/step/convert.h"
 #include "burin/io/step/read_step.h"
 #include "burin/io/step/scan.h"
 #include "burin/io/step/step_test_util.h"
@@ -223,8 +224,25 @@ TEST(BadInput, HugeCoordinatesCostTheFaceOnly) {
   ASSERT_TRUE(model) << model.error().to_string();
   EXPECT_EQ(model->faces.size(), 1u);
   ASSERT_EQ(diagnostics.count("face_left_out"), 1u);
-  EXPECT_NE(diagnostics.warnings()[0].message.find("10 km"), std::string::npos) << diagnostics.warnings()[0].message;
   EXPECT_FALSE(diagnostics.warnings()[0].where.entity.empty());
+}
+
+TEST(BadInput, SurfacesThatCannotBeAreNamed) {
+  std::mt19937 random(37);
+  const auto fine = step::test::random_surface(random, 2, 2, 3, 3);
+  EXPECT_EQ(step::what_is_wrong(fine), "");
+  const auto wrong = [&](const geom::HPoint& h) {
+    auto s = fine;
+    s.points[4] = h;
+    return step::what_is_wrong(s);
+  };
+  EXPECT_NE(wrong({2e7, 0, 0, 1}).find("10 km"), std::string::npos);
+  EXPECT_NE(wrong({0, std::nan(""), 0, 1}).find("not a number"), std::string::npos);
+  EXPECT_NE(wrong({0, 0, 0, 0}).find("weight"), std::string::npos);
+  EXPECT_NE(wrong({0, 0, 0, std::nan("")}).find("weight"), std::string::npos);
+  auto steep = fine;
+  steep.degree_v = 26;
+  EXPECT_NE(step::what_is_wrong(steep).find("degree is 26"), std::string::npos);
 }
 
 }  // namespace

@@ -193,6 +193,8 @@ class Scanner {
                   line);
     check_counts(*type, *list, line);
     if (!failed() && (*type == 126 || *type == 128)) check_spline(*list, *type == 128, line);
+    if (!failed() && *type == 504) check_edges(*list, line);
+    if (!failed() && *type == 514) check_shell(*list, line);
     if (!failed()) add_references(i / 2, *type, *list, number(a, 6).value_or(0), graph);
   }
 
@@ -324,6 +326,35 @@ class Scanner {
                " but has " + std::to_string(v.size() - 1),
            line);
     }
+  }
+
+  /// The entity type at a pointer; 0 when it points to nothing.
+  long long type_at(long long pointer) {
+    const std::vector<Line>& d = section('D');
+    if (pointer < 1 || pointer % 2 == 0 || pointer >= static_cast<long long>(d.size())) return 0;
+    return parse_integer(trim(d[static_cast<std::size_t>(pointer) - 1].text.substr(0, 8))).value_or(0);
+  }
+
+  /// The curves of an edge list (504): OpenCASCADE follows whatever stands there.
+  void check_edges(const Values& v, int line) {
+    constexpr std::array<long long, 9> kCurves{100, 102, 104, 106, 110, 112, 126, 130, 116};
+    const auto count = static_cast<std::size_t>(integer(v, 1).value_or(0));
+    for (std::size_t k = 0; k < count; ++k) {
+      const long long type = type_at(integer(v, 2 + 5 * k).value_or(0));
+      const long long start = type_at(integer(v, 3 + 5 * k).value_or(0));
+      const long long end = type_at(integer(v, 5 + 5 * k).value_or(0));
+      if (std::find(kCurves.begin(), kCurves.end(), type) == kCurves.end() || start != 502 || end != 502)
+        return fail("edge " + std::to_string(k + 1) + " of entity 504 is not a curve between vertices", line);
+    }
+  }
+
+  /// The faces of a shell (514), each with its orientation.
+  void check_shell(const Values& v, int line) {
+    const auto count = static_cast<std::size_t>(integer(v, 1).value_or(0));
+    bool good = count > 0;
+    for (std::size_t k = 0; k < count; ++k)
+      good = good && type_at(integer(v, 2 + 2 * k).value_or(0)) == 510 && integer(v, 3 + 2 * k).has_value();
+    if (!good) fail("entity 514 does not name the faces of a shell", line);
   }
 
   /// Pointers to other entities of the types that readers follow by recursion.
