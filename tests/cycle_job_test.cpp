@@ -77,9 +77,13 @@ std::vector<verify::TipPass> tips_of(const job::CycleRun& run, int surface) {
   std::map<int, verify::TipPass> passes;
   for (const cycle::Motion& m : run.plan.motions) {
     if (m.kind != cycle::MotionKind::cut || m.surface != surface) continue;
-    verify::TipPass& pass = passes[m.pass];
-    for (std::size_t i = 0; i + 1 < m.path.nodes.size(); ++i)
-      for (int k = 0; k <= 8; ++k) pass.tips.push_back(geom::evaluate_piece(m.path, i, k / 8.0).p);
+    std::vector<Point3> tips{m.path.start()};
+    for (std::size_t i = 0; i + 1 < m.path.nodes.size(); ++i) {
+      // Chords of 0.06 mm leave a bend of radius 3 by 1.5e-4 mm.
+      const int chords = 1 + int(geom::piece_length(m.path, i) / 0.06);
+      for (int k = 1; k <= chords; ++k) tips.push_back(geom::evaluate_piece(m.path, i, double(k) / chords).p);
+    }
+    passes[m.pass].stretches.push_back(std::move(tips));
   }
   std::vector<verify::TipPass> out;
   for (auto& [number, pass] : passes) out.push_back(std::move(pass));
@@ -99,8 +103,8 @@ TEST(CycleJob, ScallopIsWhatWasAskedFor) {
     ASSERT_EQ(job.runs.size(), 1u);
     if (job.lifted > 0) continue;  // bent tighter than the ball: heights follow the lift
     const NurbsSurface& s = job.surfaces[0].composite.surfaces[0].surface;
-    const verify::ScallopReport report =
-        measure_scallop(s, tips_of(job.runs[0], 0), {.radius_mm = 3, .normal_reversed = reversed_normal(s)});
+    const verify::ScallopReport report = measure_scallop(
+        s, tips_of(job.runs[0], 0), {.radius_mm = 3, .normal_reversed = reversed_normal(s), .spacing_mm = 2});
     EXPECT_LE(report.scallop_max_mm, method == nc::PathMethod::iso_scallop ? 0.02 * 1.02 : 0.02 * (1 + 1e-6))
         << i;
     if (method == nc::PathMethod::iso_scallop) {

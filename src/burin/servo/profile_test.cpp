@@ -65,7 +65,8 @@ TEST(Profile, SmoothedMotionKeepsTheLimitsOfItsPlace) {
       EXPECT_NEAR(end.a, profile[i + 1].a, 1e-5);
       for (int k = 0; k <= 10; ++k) {
         const State now = at(profile[i], profile[i].time + dt * k / 10);
-        const double v = limit_at(spans, now.s, &LimitSpan::v), a = limit_at(spans, now.s, &LimitSpan::a, 1e-9);
+        const double v = limit_at(spans, now.s, &LimitSpan::v),
+                     a = limit_at(spans, now.s, &LimitSpan::a, 1e-9);
         ASSERT_GE(now.v, -1e-9);
         ASSERT_LE(now.v, v * (1 + 1e-6)) << "round " << round << " s " << now.s;
         ASSERT_LE(std::abs(now.a), a * (1 + 1e-6)) << "round " << round << " s " << now.s;

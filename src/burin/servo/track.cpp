@@ -44,6 +44,13 @@ Derivatives derivatives(const Piece& piece, double x) {
   return d;
 }
 
+Vec3 velocity(const Piece& piece, double x) {
+  const auto slope = [x](const double(&c)[6]) {
+    return (((5 * c[5] * x + 4 * c[4]) * x + 3 * c[3]) * x + 2 * c[2]) * x + c[1];
+  };
+  return {slope(piece.c[0]), slope(piece.c[1]), slope(piece.c[2])};
+}
+
 /// How far the piece can reach: sum of the coefficients' sizes.
 double extent(const Piece& piece) {
   double sum = 0;
@@ -163,7 +170,7 @@ Shape shape_of(const Piece& piece, double x0, double x1) {
   double low = 1e300, high = 0;
   Vec3 first, last;
   for (int i = 0; i <= 4; ++i) {
-    const Vec3 d = derivatives(piece, x0 + (x1 - x0) * i / 4).d1;
+    const Vec3 d = velocity(piece, x0 + (x1 - x0) * i / 4);
     const double speed = geom::norm(d);
     low = std::min(low, speed);
     high = std::max(high, speed);
@@ -265,10 +272,10 @@ double arc_length(const Piece& piece, double x0, double x1) {
   constexpr double node[3] = {0, 0.53846931010568309, 0.90617984593866399};
   constexpr double weight[3] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
   const double mid = 0.5 * (x0 + x1), half = 0.5 * (x1 - x0);
-  double sum = weight[0] * geom::norm(derivatives(piece, mid).d1);
+  double sum = weight[0] * geom::norm(velocity(piece, mid));
   for (int i = 1; i < 3; ++i)
-    sum += weight[i] * (geom::norm(derivatives(piece, mid - half * node[i]).d1) +
-                        geom::norm(derivatives(piece, mid + half * node[i]).d1));
+    sum += weight[i] * (geom::norm(velocity(piece, mid - half * node[i])) +
+                        geom::norm(velocity(piece, mid + half * node[i])));
   return half * sum;
 }
 

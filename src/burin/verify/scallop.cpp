@@ -16,14 +16,25 @@ using geom::Point3;
 using geom::Vec3;
 
 // Places on the line between two passes at which the height is taken before the ridge is narrowed down.
-constexpr int kAcross = 24;
-// Golden sections around the highest of them: the place of the ridge to 1e-5 of the side step.
-constexpr int kNarrow = 20;
+constexpr int kAcross = 16;
+// Golden sections around the highest of them: the place of the ridge to 2e-5 of the side step.
+constexpr int kNarrow = 18;
+
+// An end of a stretch counts as abreast when the way to it is square to the path within this (cosine).
+constexpr double kSquare = 0.02;
 
 struct Station {
   Point3 center;
+  Vec3 along;  ///< unit
   geom::SurfacePoint foot;
 };
+
+/// Every chord of a pass.
+template <class Each>
+void for_chords(const TipPass& pass, const Each& each) {
+  for (const std::vector<Point3>& tips : pass.stretches)
+    for (std::size_t i = 0; i + 1 < tips.size(); ++i) each(tips[i], tips[i + 1]);
+}
 
 class Measure {
  public:
@@ -59,57 +70,61 @@ class Measure {
   static std::vector<Sweep::Segment> segments(const std::vector<TipPass>& passes, double radius) {
     std::vector<Sweep::Segment> all;
     for (const TipPass& pass : passes)
-      for (std::size_t i = 0; i < pass.tips.size(); ++i)
-        all.push_back({center_of(pass.tips[i], radius),
-                       center_of(pass.tips[std::min(i + 1, pass.tips.size() - 1)], radius)});
+      for_chords(pass, [&](Point3 a, Point3 b) {
+        all.push_back({center_of(a, radius), center_of(b, radius)});
+      });
     return all;
   }
 
   double station_spacing() const {
     double length = 0;
     for (const TipPass& pass : passes_)
-      for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i)
-        length += distance(pass.tips[i], pass.tips[i + 1]);
+      for_chords(pass, [&](Point3 a, Point3 b) { length += distance(a, b); });
     const double wanted = options_.spacing_mm > 0 ? options_.spacing_mm : 0.25 * options_.radius_mm;
     const double least = length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
     return std::max(wanted, least);
   }
 
-  Station station(Point3 tip) const {
+  Station station(Point3 tip, Vec3 along) const {
     const Point3 center = center_of(tip, options_.radius_mm);
-    return {center, finder_.find(center, 1e-6)};
+    return {center, unit(along), finder_.find(center, 1e-6)};
   }
 
-  /// Evenly along the pass, both ends among them.
+  /// Evenly along every stretch, both ends among them.
   std::vector<Station> stations(const TipPass& pass, double spacing) const {
     std::vector<Station> out;
-    if (pass.tips.empty()) return out;
-    out.push_back(station(pass.tips.front()));
-    double left = spacing;
-    for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i) {
-      const double length = distance(pass.tips[i], pass.tips[i + 1]);
-      double at = 0;
-      while (length - at >= left) {
-        at += left;
-        out.push_back(station(lerp(pass.tips[i], pass.tips[i + 1], at / length)));
-        left = spacing;
+    for (const std::vector<Point3>& tips : pass.stretches) {
+      double left = 0;
+      for (std::size_t i = 0; i + 1 < tips.size(); ++i) {
+        const Vec3 way = tips[i + 1] - tips[i];
+        const double length = norm(way);
+        double at = left;
+        for (; at < length; at += spacing) out.push_back(station(tips[i] + (at / length) * way, way));
+        left = at - length;
       }
-      left -= length - at;
+      if (tips.size() > 1) out.push_back(station(tips.back(), tips.back() - tips[tips.size() - 2]));
     }
-    out.push_back(station(pass.tips.back()));
     return out;
   }
 
-  Point3 nearest_on(const TipPass& pass, Point3 center) const {
-    Point3 best = center_of(pass.tips.front(), options_.radius_mm);
-    double least = distance(best, center);
-    for (std::size_t i = 0; i + 1 < pass.tips.size(); ++i) {
-      const Point3 a = center_of(pass.tips[i], options_.radius_mm);
-      const Vec3 d = center_of(pass.tips[i + 1], options_.radius_mm) - a;
+  struct Abreast {
+    Point3 center;
+    bool square = false;  ///< the way there is square to the path
+  };
+  Abreast nearest_on(const TipPass& pass, const Station& from) const {
+    Abreast best;
+    double least = std::numeric_limits<double>::infinity();
+    for_chords(pass, [&](Point3 tip_a, Point3 tip_b) {
+      const Point3 a = center_of(tip_a, options_.radius_mm);
+      const Vec3 d = tip_b - tip_a;
       const double l2 = dot(d, d);
-      const Point3 p = a + (l2 > 0 ? std::clamp(dot(center - a, d) / l2, 0.0, 1.0) : 0.0) * d;
-      if (distance(p, center) < least) least = distance(p, center), best = p;
-    }
+      const Point3 p = a + (l2 > 0 ? std::clamp(dot(from.center - a, d) / l2, 0.0, 1.0) : 0.0) * d;
+      const double far = distance(p, from.center);
+      if (far < least) {
+        least = far;
+        best = {p, std::abs(dot(p - from.center, from.along)) <= kSquare * far};
+      }
+    });
     return best;
   }
 
@@ -117,11 +132,14 @@ class Measure {
   double height(double u, double v) {
     ++report_.samples;
     const double side = options_.normal_reversed ? -1 : 1;
-    const Vec3 n = side * geom::normal(surface_, u, v);
-    const Point3 q = evaluator_.point(u, v) + options_.stock_mm * n;
-    const double reach = 2 * options_.radius_mm;
-    const auto h = sweep_.entry(q, n, -reach, reach);
-    return h ? *h : reach;
+    const geom::SurfaceDerivatives d = evaluator_.derivatives(u, v);
+    Vec3 n = geom::normal(d);
+    if (n == Vec3{}) n = geom::normal(surface_, u, v);  // a pole
+    n = side * n;
+    const Point3 q = d.p + options_.stock_mm * n;
+    // What stands higher than the ball's radius was not cut at all.
+    const auto h = sweep_.entry(q, n, -2 * options_.radius_mm, options_.radius_mm);
+    return h ? *h : options_.radius_mm;
   }
 
   void gouge_at(double u, double v) {
@@ -134,11 +152,13 @@ class Measure {
 
   ScallopReport::Ridge ridge(const std::vector<Station>& from, const TipPass& to) {
     ScallopReport::Ridge ridge{std::numeric_limits<double>::infinity(), 0};
-    if (to.tips.empty()) return ridge;
+    const bool any = std::any_of(to.stretches.begin(), to.stretches.end(),
+                                 [](const std::vector<Point3>& tips) { return tips.size() > 1; });
+    if (!any) return ridge;
     for (const Station& a : from) {
-      const geom::SurfacePoint b = finder_.find(nearest_on(to, a.center), 1e-6);
-      const double h = highest(a.foot, b);
-      ridge.min_mm = std::min(ridge.min_mm, h);
+      const Abreast next = nearest_on(to, a);
+      const double h = highest(a.foot, finder_.find(next.center, 1e-6));
+      if (next.square) ridge.min_mm = std::min(ridge.min_mm, h);
       ridge.max_mm = std::max(ridge.max_mm, h);
     }
     return ridge;

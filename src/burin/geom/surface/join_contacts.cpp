@@ -17,6 +17,8 @@ constexpr int kAngleSamples = 5;
 /// Tangent planes that differ by less are one smooth surface when several patches compete for an edge, and a
 /// patch that leaves the edge in the same direction as the other, within this, lies on it. Radians.
 constexpr double kSmooth = 1e-2, kFold = 1e-3;
+/// Edges up to this many tolerances apart are reported.
+constexpr double kNearMiss = 10;
 
 struct Candidate {
   Contact contact;
@@ -62,13 +64,39 @@ bool covers_side(double from, double to) {
   return std::min(from, to) == 0 && std::max(from, to) == 1;
 }
 
+std::string text_of(double mm) {
+  return format_fixed(mm, 6) + " mm";
+}
+
+/// Whole edges that are only a little too far apart: the user should know.
+void near_miss(const std::vector<Source>& sources, int a, SideIndex side_a, int b, SideIndex side_b,
+               double tolerance, JoinReport& report) {
+  const Source &one = sources[static_cast<std::size_t>(a)], &two = sources[static_cast<std::size_t>(b)];
+  if (one.patch == two.patch) return;
+  for (const Overlap& overlap :
+       overlaps(one.edges[static_cast<std::size_t>(side_a)], two.edges[static_cast<std::size_t>(side_b)],
+                kNearMiss * tolerance)) {
+    const Match &first = overlap.pieces.front(), &last = overlap.pieces.back();
+    if (!covers_side(first.a0, last.a1) || !covers_side(first.b0, last.b1)) continue;
+    Candidate candidate;
+    candidate.contact = {a, b, side_a, side_b, first, false, false, false};
+    judge_angle(sources, candidate);
+    if (candidate.fold) continue;
+    report_unjoined(
+        report, one.patch, two.patch,
+        "their edges are " + text_of(overlap.gap_mm()) + " apart (joined up to " + text_of(tolerance) + ")");
+  }
+}
+
 void compare_sides(const std::vector<Source>& sources, int a, SideIndex side_a, int b, SideIndex side_b,
-                   double tolerance, std::vector<Candidate>& out) {
+                   double tolerance, std::vector<Candidate>& out, JoinReport& report) {
   const auto& edge_a = sources[static_cast<std::size_t>(a)].edges[static_cast<std::size_t>(side_a)];
   const auto& edge_b = sources[static_cast<std::size_t>(b)].edges[static_cast<std::size_t>(side_b)];
   const Source &one = sources[static_cast<std::size_t>(a)], &two = sources[static_cast<std::size_t>(b)];
   const bool same_patch = one.patch == two.patch, bent = one.bent || two.bent;
-  for (const Overlap& overlap : overlaps(edge_a, edge_b, tolerance)) {
+  const std::vector<Overlap> found = overlaps(edge_a, edge_b, tolerance);
+  if (found.empty() && a != b) near_miss(sources, a, side_a, b, side_b, tolerance, report);
+  for (const Overlap& overlap : found) {
     const Match &first = overlap.pieces.front(), &last = overlap.pieces.back();
     const bool partial = !covers_side(first.a0, last.a1) || !covers_side(first.b0, last.b1);
     if (a == b && partial) continue;
@@ -83,7 +111,7 @@ void compare_sides(const std::vector<Source>& sources, int a, SideIndex side_a, 
 }
 
 /// Pairs of sides whose boxes overlap: a sweep along x.
-std::vector<Candidate> candidates(const std::vector<Source>& sources, double tolerance) {
+std::vector<Candidate> candidates(const std::vector<Source>& sources, double tolerance, JoinReport& report) {
   struct Entry {
     double lo, hi;
     int source;
@@ -94,7 +122,7 @@ std::vector<Candidate> candidates(const std::vector<Source>& sources, double tol
     for (SideIndex side = 0; side < 4; ++side) {
       const auto s = static_cast<std::size_t>(side);
       if (sources[i].collapsed[s]) continue;
-      const Box3 box = sources[i].edges[s].box.grown(tolerance);
+      const Box3 box = sources[i].edges[s].box.grown(kNearMiss * tolerance);
       entries.push_back({box.lo.x, box.hi.x, static_cast<int>(i), side});
     }
   }
@@ -109,7 +137,7 @@ std::vector<Candidate> candidates(const std::vector<Source>& sources, double tol
       const Entry &x = ordered ? entries[i] : entries[j], &y = ordered ? entries[j] : entries[i];
       // A patch meets itself only across: a ring that is closed.
       if (x.source == y.source && across(x.side) != across(y.side)) continue;
-      compare_sides(sources, x.source, x.side, y.source, y.side, tolerance, out);
+      compare_sides(sources, x.source, x.side, y.source, y.side, tolerance, out, report);
     }
   }
   return out;
@@ -129,10 +157,6 @@ struct Taken {
 auto rank(const Contact& c) {
   return std::make_tuple(!c.match.exact, !c.smooth, c.partial, c.a, c.b, c.side_a, c.side_b, c.match.a0,
                          c.match.b0);
-}
-
-std::string text_of(double mm) {
-  return format_fixed(mm, 6) + " mm";
 }
 
 /// Joining parts that only agree in place bends the higher-numbered patch: by how much, and is that allowed?
@@ -180,7 +204,7 @@ Source source_of(NurbsSurface surface, std::size_t patch, double tolerance_mm) {
 
 std::vector<Contact> find_contacts(const std::vector<Source>& sources, const JoinOptions& options,
                                    JoinReport& report, Diagnostics& diagnostics) {
-  std::vector<Candidate> all = candidates(sources, options.tolerance_mm);
+  std::vector<Candidate> all = candidates(sources, options.tolerance_mm, report);
   std::sort(all.begin(), all.end(),
             [](const Candidate& x, const Candidate& y) { return rank(x.contact) < rank(y.contact); });
   std::vector<std::array<Taken, 4>> taken(sources.size());

@@ -20,6 +20,8 @@ constexpr int kNewtonSteps = 40;
 constexpr double kShortest = 4;
 /// Rounding of points that are evaluated twice in different ways, relative to their size.
 constexpr double kRounding = 1e-10;
+/// The same for parameters of knots that were found on the other curve.
+constexpr double kPieceRounding = 1e-8;
 /// A projective map replaces the plain linear one when it lowers the gap to this part.
 constexpr double kBetter = 0.01;
 
@@ -105,6 +107,19 @@ double gap_of(const EdgeCurve& a, const EdgeCurve& b, const Match& m, double eno
   return most;
 }
 
+/// Largest distance of the places, where the parameters only nearly correspond.
+double place_gap(const EdgeCurve& a, const EdgeCurve& b, const Match& m) {
+  const int n = samples_for(a, b);
+  const double lo = std::min(m.b0, m.b1), hi = std::max(m.b0, m.b1);
+  double most = 0;
+  for (int k = 0; k < n; ++k) {
+    const double t = m.a0 + (m.a1 - m.a0) * k / (n - 1);
+    const Point3 p = point(a.curve, t);
+    most = std::max(most, distance(point(b.curve, foot(b.curve, p, m.b_at(t), lo, hi)), p));
+  }
+  return most;
+}
+
 /// How much the quotient of the weights varies along the match, relative. b is bent by the map as the
 /// surfaces will be.
 double weight_variation(const EdgeCurve& a, const EdgeCurve& b, const Match& m) {
@@ -140,6 +155,7 @@ std::optional<Match> fit(const EdgeCurve& a, const EdgeCurve& b, Match m, double
     }
   }
   if (m.gap_mm > tolerance) return {};
+  if (m.gap_mm > kRounding * a.length) m.gap_mm = std::min(m.gap_mm, place_gap(a, b, m));
   m.exact = weight_variation(a, b, m) * a.length * (m.a1 - m.a0) <= tolerance;
   return m;
 }
@@ -198,7 +214,9 @@ std::optional<double> same_places(const EdgeCurve& a, double a0, double a1, cons
   double most = 0, last = b0;
   for (int k = 0; k < n; ++k) {
     const Point3 p = point(a.curve, a0 + (a1 - a0) * k / (n - 1));
-    const auto t = near_in(b, p, std::min(last, b1), std::max(last, b1), tolerance);
+    const double lo = std::min(last, b1), hi = std::max(last, b1);
+    std::optional<double> t = foot(b.curve, p, last, lo, hi);
+    if (distance(point(b.curve, *t), p) > tolerance) t = near_in(b, p, lo, hi, tolerance);
     if (!t) return {};
     most = std::max(most, distance(point(b.curve, *t), p));
     last = *t;
@@ -213,7 +231,10 @@ std::optional<Overlap> compare(const EdgeCurve& a, const EdgeCurve& b, const Mat
   if (!near_in(b, middle, lo, hi, tolerance)) return {};
   const auto one = fit(a, b, stretch, tolerance);
   if (one && one->exact) return Overlap{{*one}};
-  if (auto pieces = fit_pieces(a, b, stretch, tolerance)) return Overlap{std::move(*pieces)};
+  // Pieces mean cuts: only where they are the truth, not where noise fits better in parts.
+  const double rounding = kPieceRounding * a.length;
+  if (auto pieces = fit_pieces(a, b, stretch, std::min(tolerance, rounding)))
+    return Overlap{std::move(*pieces)};
   if (one) return Overlap{{*one}};
   const auto there = same_places(a, stretch.a0, stretch.a1, b, stretch.b0, stretch.b1, tolerance);
   if (!there) return {};

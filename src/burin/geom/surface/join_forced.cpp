@@ -125,14 +125,6 @@ Member map_of(const NurbsSurface& part, Direction d, Interval of_base) {
   return m;
 }
 
-double deviation_of(const NurbsSurface& base, const std::vector<NurbsSurface>& parts,
-                    const std::vector<Member>& maps, double negligible) {
-  double most = 0;
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    most = std::max(most, distance_by_samples(parts[i], {maps[i].u, maps[i].v}, base, maps[i], negligible));
-  return most;
-}
-
 struct Pairing {
   std::size_t partial = 0;
   SideIndex base_side = 0, partial_side = 0;
@@ -214,7 +206,7 @@ std::vector<Source> forced_parts(const Source& base, SideIndex base_side, const 
     parts.push_back(surface_of(std::move(strip.rows), d, base.surface));
     maps.push_back(map_of(parts.back(), d, strip.of_base));
   }
-  const double deviation = deviation_of(base.surface, parts, maps, 1e-3 * tolerance_mm);
+  const double deviation = distance_to_parts(base.surface, parts, maps, 1e-3 * tolerance_mm);
   std::vector<Source> out;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Source s = source_of(parts[i], base.patch, tolerance_mm);

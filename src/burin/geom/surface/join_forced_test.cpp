@@ -11,9 +11,9 @@ namespace {
 using namespace test;
 
 #ifdef NDEBUG
-constexpr int kCases = 40;
+constexpr int kCases = 8;
 #else
-constexpr int kCases = 3;
+constexpr int kCases = 1;
 #endif
 
 /// A base of 4 x 12 control points, and a partial patch to its right whose edge has the control points of
@@ -42,19 +42,32 @@ Fixture fixture(Random& random, int first, int last, double height) {
   return f;
 }
 
-/// Largest distance of random points of any of `from` to the nearest of `to`.
+/// Largest distance of points of any of `from` to the nearest of `to` (proven closest points): a raster with
+/// the edges, then random steps uphill that become shorter.
 double far_off(Random& random, const std::vector<NurbsSurface>& from, const std::vector<NurbsSurface>& to) {
   std::vector<ClosestPointFinder> finders;
   for (const NurbsSurface& s : to) finders.emplace_back(s);
   double most = 0;
   for (const NurbsSurface& s : from) {
-    for (int k = 0; k < 400; ++k) {
-      const Point3 p = point(s, at_fraction(s.domain(Direction::u), uniform(random, 0, 1)),
-                             at_fraction(s.domain(Direction::v), uniform(random, 0, 1)));
+    double here = 0, best_u = 0, best_v = 0;
+    constexpr int kColumns = 7, kRows = 60, kUphill = 150;
+    for (int k = 0; k < kColumns * kRows + kUphill; ++k) {
+      double fu = k % kColumns / (kColumns - 1.0), fv = k / kColumns / (kRows - 1.0);
+      if (const int climbed = k - kColumns * kRows; climbed >= 0) {
+        const double step = 0.1 * std::exp2(-climbed / 20.0);
+        fu = std::clamp(best_u + uniform(random, -step, step), 0.0, 1.0);
+        fv = std::clamp(best_v + uniform(random, -step, step), 0.0, 1.0);
+      }
+      const Point3 p =
+          point(s, at_fraction(s.domain(Direction::u), fu), at_fraction(s.domain(Direction::v), fv));
       double nearest = std::numeric_limits<double>::infinity();
       for (const auto& finder : finders) nearest = std::min(nearest, finder.find(p, 1e-7).distance);
-      most = std::max(most, nearest);
+      if (nearest <= here) continue;
+      here = nearest;
+      best_u = fu;
+      best_v = fv;
     }
+    most = std::max(most, here);
   }
   return most;
 }
@@ -109,7 +122,7 @@ TEST(ForcedJoin, ThreeSurfacesAndATrueDeviation) {
       const double seen = std::max(there, back);
       EXPECT_GT(seen, 0.01);
       EXPECT_GE(c.report.deviation_max_mm, 0.999 * seen);
-      EXPECT_LE(c.report.deviation_max_mm, 1.3 * seen + 0.05);
+      EXPECT_LE(c.report.deviation_max_mm, 1.05 * seen);
     }
   }
 }

@@ -270,7 +270,8 @@ std::vector<Rectangle> largest_first(const CellGraph& graph) {
       queue.push(now);
       continue;
     }
-    out.push_back(explorer.rectangle(best));
+    // Not `best`: another rectangle of the same area may have taken its place.
+    out.push_back(explorer.rectangle(now));
     grower.take(out.back());
   }
   return out;

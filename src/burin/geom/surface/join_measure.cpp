@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
 
 namespace burin::geom::detail {
@@ -11,6 +13,9 @@ namespace {
 
 constexpr double kTangentAngle = 1e-6, kCurvatureRatio = 1e-4;  // promised in join.h
 constexpr int kSamples = 9;                                     // per span and direction, promised in join.h
+/// In very large nets fewer: each span is small.
+constexpr std::size_t kManySpans = 40000;
+constexpr int kFewSamples = 3;
 /// Samples of a joint's line per span.
 constexpr int kLineSamples = 5;
 /// Curvature radii beyond this many sizes of the surface are flat.
@@ -116,23 +121,20 @@ double local_distance(const NurbsSurface& surface, Point3 p, Point2 start) {
   return best;
 }
 
-double distance_by_samples(const NurbsSurface& joined, const Region& region, const NurbsSurface& source,
-                           const Member& map, double negligible_mm) {
-  const std::vector<double> us = samples_in(joined.knots_u, region.u, kSamples);
-  const std::vector<double> vs = samples_in(joined.knots_v, region.v, kSamples);
-  SurfaceEvaluator on_joined(joined), on_source(source);
+double largest_over(const NurbsSurface& surface, const Region& region,
+                    const std::function<double(Point2 at, double most)>& distance_at, double negligible_mm) {
+  const std::size_t spans =
+      spans_in(surface.knots_u, region.u).size() * spans_in(surface.knots_v, region.v).size();
+  const int per_span = spans <= kManySpans ? kSamples : kFewSamples;
+  const std::vector<double> us = samples_in(surface.knots_u, region.u, per_span);
+  const std::vector<double> vs = samples_in(surface.knots_v, region.v, per_span);
   double most = 0;
   Point2 worst{us.front(), vs.front()};
   const auto look = [&](Point2 at) {
-    const Point2 there = patch_parameters(map, at);
-    const Point3 p = on_joined.point(at.x, at.y), q = on_source.point(there.x, there.y);
-    double apart = distance(p, q);
-    if (apart > negligible_mm && apart > most)
-      apart = std::max(local_distance(source, p, there), local_distance(joined, q, at));
-    if (!(apart > most)) return false;
+    const double apart = distance_at(at, most);
+    if (!(apart > most)) return;
     most = apart;
     worst = at;
-    return true;
   };
   for (const double v : vs)
     for (const double u : us) look({u, v});
@@ -148,6 +150,48 @@ double distance_by_samples(const NurbsSurface& joined, const Region& region, con
     }
   }
   return most;
+}
+
+double distance_by_samples(const NurbsSurface& joined, const Region& region, const NurbsSurface& source,
+                           const Member& map, double negligible_mm) {
+  SurfaceEvaluator on_joined(joined), on_source(source);
+  const auto apart = [&](Point2 at, double most) {
+    const Point2 there = patch_parameters(map, at);
+    const Point3 p = on_joined.point(at.x, at.y), q = on_source.point(there.x, there.y);
+    const double bound = distance(p, q);
+    if (bound <= negligible_mm || bound <= most) return bound;
+    return std::max(local_distance(source, p, there), local_distance(joined, q, at));
+  };
+  return largest_over(joined, region, apart, negligible_mm);
+}
+
+double distance_to_parts(const NurbsSurface& whole, const std::vector<NurbsSurface>& parts,
+                         const std::vector<Member>& maps, double negligible_mm) {
+  // Newton may end at a place that is near but not nearest: what would raise the maximum is proven.
+  const ClosestPointFinder on_whole(whole);
+  std::vector<ClosestPointFinder> on_parts;
+  for (const NurbsSurface& part : parts) on_parts.emplace_back(part);
+  double largest = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto to_whole = [&](Point2 at, double most) {
+      const Point3 p = point(parts[i], at.x, at.y);
+      const double local = local_distance(whole, p, patch_parameters(maps[i], at));
+      return local <= std::max(most, negligible_mm) ? local : on_whole.find(p, negligible_mm).distance;
+    };
+    largest = std::max(largest, largest_over(parts[i], {maps[i].u, maps[i].v}, to_whole, negligible_mm));
+  }
+  const auto to_nearest_part = [&](Point2 at, double most) {
+    const Point3 p = point(whole, at.x, at.y);
+    double local = std::numeric_limits<double>::infinity(), proven = local;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      local = std::min(local, local_distance(parts[i], p, joined_parameters(maps[i], at)));
+    if (local <= std::max(most, negligible_mm)) return local;
+    for (const ClosestPointFinder& finder : on_parts)
+      proven = std::min(proven, finder.find(p, negligible_mm).distance);
+    return proven;
+  };
+  const Region all{whole.domain(Direction::u), whole.domain(Direction::v)};
+  return std::max(largest, largest_over(whole, all, to_nearest_part, negligible_mm));
 }
 
 }  // namespace burin::geom::detail

@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 
 #ifdef NDEBUG
-constexpr int kCases = 1000;
+constexpr int kCases = 250;
 #else
 constexpr int kCases = 8;
 #endif

@@ -10,7 +10,7 @@ using namespace test;
 
 /// In release thousands of random cases, in Debug enough to see that it works.
 #ifdef NDEBUG
-constexpr int kCases = 1500;
+constexpr int kCases = 400;
 #else
 constexpr int kCases = 12;
 #endif

@@ -73,7 +73,10 @@ void shift_knots(std::vector<double>& knots, Interval to) {
 MappedCurve from_bspline(const Handle(Geom_BSplineCurve) & source, Interval t) {
   Handle(Geom_BSplineCurve) curve = Handle(Geom_BSplineCurve)::DownCast(source->Copy());
   curve->Segment(t.lo, t.hi, Precision::PConfusion());
-  if (curve->IsPeriodic()) curve->SetNotPeriodic();
+  if (curve->IsPeriodic()) {
+    curve->SetNotPeriodic();
+    curve->Segment(curve->FirstParameter(), curve->LastParameter());
+  }
   MappedCurve mapped;
   mapped.curve.degree = curve->Degree();
   mapped.curve.knots = values(curve->KnotSequence());
@@ -165,6 +168,14 @@ MappedSurface from_bspline(const Handle(Geom_BSplineSurface) & source, Interval 
   s->CheckAndSegment(u.lo, u.hi, v.lo, v.hi, Precision::PConfusion(), Precision::PConfusion());
   if (s->IsUPeriodic()) s->SetUNotPeriodic();
   if (s->IsVPeriodic()) s->SetVNotPeriodic();
+  // Whole periods, and surfaces that come so from the file, do not begin and end with full knots yet.
+  const bool clamped = s->UMultiplicity(1) > s->UDegree() && s->UMultiplicity(s->NbUKnots()) > s->UDegree() &&
+                       s->VMultiplicity(1) > s->VDegree() && s->VMultiplicity(s->NbVKnots()) > s->VDegree();
+  if (!clamped) {
+    geom::Interval all_u, all_v;
+    s->Bounds(all_u.lo, all_u.hi, all_v.lo, all_v.hi);
+    s->Segment(all_u.lo, all_u.hi, all_v.lo, all_v.hi);
+  }
   MappedSurface mapped;
   NurbsSurface& n = mapped.surface;
   n.degree_u = s->UDegree();

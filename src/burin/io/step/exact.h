@@ -41,7 +41,7 @@ geom::NurbsSurface plane(geom::Point3 origin, geom::Vec3 x, geom::Vec3 y, geom::
 /// S(u, v) = curve(u) + v * direction.
 MappedSurface extrude(const MappedCurve& curve, geom::Vec3 direction, geom::Interval v);
 /// S(u, v) = meridian(v) turned by u around the axis through `origin` along the unit vector `axis`. Points of
-/// the meridian within `on_axis_mm` of the axis are put on it, so that a pole is one point exactly.
+/// the meridian within `on_axis_mm` of the axis are put on it, so that a pole is one point.
 /// At most two turns.
 MappedSurface revolve(const MappedCurve& meridian, geom::Point3 origin, geom::Vec3 axis,
                       geom::Interval angles, double on_axis_mm);

@@ -6,6 +6,9 @@
 #include <IGESData_GlobalSection.hxx>
 #include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
+#include <IGESGeom_BSplineCurve.hxx>
+#include <IGESToBRep_BasicCurve.hxx>
+#include <IGESToBRep_CurveAndSurface.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Interface_ReportEntity.hxx>
 #include <Interface_Static.hxx>
@@ -191,6 +194,23 @@ Result<void> check_entities(const Handle(Interface_InterfaceModel) & model) {
   return {};
 }
 
+/// Spline curves that OpenCASCADE cannot build (knots that are only nearly equal): boundaries made of them
+/// are null pointers to its reader of loops.
+Result<void> check_curves(const Handle(IGESData_IGESModel) & model) {
+  IGESToBRep_CurveAndSurface session;
+  session.SetModel(model);
+  session.SetTransferProcess(new Transfer_TransientProcess());
+  IGESToBRep_BasicCurve converter(session);
+  for (int i = 1; i <= model->NbEntities(); ++i) {
+    const auto curve = Handle(IGESGeom_BSplineCurve)::DownCast(model->Value(i));
+    if (curve.IsNull() || !converter.TransferBasicCurve(curve).IsNull()) continue;
+    Error error = damaged("is damaged: the knots of a curve do not fit its degree (a complete IGES file)");
+    error.where.entity = entity_label(model, curve);
+    return error;
+  }
+  return {};
+}
+
 std::string unit_word(std::string name) {
   name = to_lower(trim(name));
   static const std::map<std::string, std::string> kWords{
@@ -241,10 +261,11 @@ Result<Loaded> load_iges(std::string_view bytes, Diagnostics& diagnostics) {
   if (reader.ReadFile(file->path().c_str()) != IFSelect_RetDone)
     return damaged("cannot be read as IGES (a file of fixed 80-column lines)");
   if (auto fine = check_entities(reader.Model()); !fine) return fine.error();
+  const auto model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
+  if (auto fine = check_curves(model); !fine) return fine.error();
   reader.TransferRoots();
   Loaded loaded;
   loaded.shape = reader.OneShape();
-  const auto model = Handle(IGESData_IGESModel)::DownCast(reader.Model());
   if (!model.IsNull()) {
     const IGESData_GlobalSection& global = model->GlobalSection();
     if (!global.UnitName().IsNull()) loaded.unit = unit_word(global.UnitName()->ToCString());

@@ -145,7 +145,7 @@ void gather(std::vector<BoundaryLoop>& loops, const Extent& u, const Extent& v) 
 
 /// The part of the tolerance for the samples of a curve; the rest is for leaving out of those what need not
 /// be. Small: even sampling by halves wastes points, thinning does not.
-constexpr double kSampling = 0.2;
+constexpr double kSampling = 0.1;
 
 /// Samples one loop in the parameters of the NURBS surface.
 class Sampler {
@@ -219,28 +219,22 @@ class Sampler {
     bisect(edge, tm, m, tb, b, depth + 1, points);
   }
 
-  /// Without the points that the tolerance of thinning can do without (Douglas & Peucker): curves with
-  /// many knots bring many.
+  /// Without the points that the tolerance of thinning can do without: from each point that stays the longest
+  /// chord that holds. Curves with many knots, and halving, bring more than are needed.
   std::vector<Point2> thinned(const std::vector<Point2>& p) const {
-    std::vector<char> keep(p.size(), 0);
-    keep.front() = keep.back() = 1;
-    std::vector<std::pair<std::size_t, std::size_t>> open{{0, p.size() - 1}};
-    while (!open.empty()) {
-      const auto [a, b] = open.back();
-      open.pop_back();
-      std::size_t farthest = a;
-      double worst = thinning_;
+    constexpr std::size_t kLongest = 256;  // points a chord spans: bounds the time
+    const auto holds = [&](std::size_t a, std::size_t b) {
       for (std::size_t i = a + 1; i < b; ++i) {
-        const double d = deviation(p[i], p[a], p[b]);
-        if (d > worst) worst = d, farthest = i;
+        if (!(deviation(p[i], p[a], p[b]) <= thinning_)) return false;
       }
-      if (farthest == a) continue;
-      keep[farthest] = 1;
-      open.insert(open.end(), {{a, farthest}, {farthest, b}});
-    }
-    std::vector<Point2> kept;
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      if (keep[i]) kept.push_back(p[i]);
+      return true;
+    };
+    std::vector<Point2> kept{p.front()};
+    for (std::size_t a = 0; a + 1 < p.size();) {
+      std::size_t b = a + 1;
+      while (b + 1 < p.size() && b - a < kLongest && holds(a, b + 1)) ++b;
+      kept.push_back(p[b]);
+      a = b;
     }
     return kept;
   }

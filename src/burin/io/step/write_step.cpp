@@ -41,6 +41,7 @@ Result<TopoDS_Shape> as_shape(const std::vector<geom::NurbsSurface>& surfaces) {
     };
     if (auto valid = geom::validate(surfaces[i]); !valid) return bad(valid.error().message);
     if (std::string wrong = step::what_is_wrong(surfaces[i]); !wrong.empty()) return bad(wrong);
+    if (!(geom::bounds(surfaces[i]).diagonal() > Precision::Confusion())) return bad("it is a point");
     BRepBuilderAPI_MakeFace face(step::to_occt(surfaces[i]), Precision::Confusion());
     if (!face.IsDone()) return bad("it has no area or is broken");
     builder.Add(compound, face.Face());
