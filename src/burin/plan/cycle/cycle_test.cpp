@@ -98,7 +98,7 @@ TEST(Plane, StepOfAFlatSurfaceFollowsTheClosedForm) {
   for (const Method method : {Method::iso_parametric, Method::iso_scallop}) {
     const SurfacePlan p = planned(c, options(method, 2 * radius, s));
     expect_connected(p, 60);
-    EXPECT_EQ(p.paths, static_cast<std::size_t>(std::ceil(10 / (d * 0.9955))) + 1);
+    EXPECT_EQ(p.paths, static_cast<std::size_t>(std::ceil(10 / (d * 0.9965))) + 1);
     EXPECT_EQ(p.lifted, 0u);
     for (const PassFigures& f : p.figures) {
       EXPECT_LE(f.scallop_max, s);

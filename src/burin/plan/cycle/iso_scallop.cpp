@@ -8,10 +8,10 @@
 namespace burin::cycle {
 namespace {
 
-// Use of the limits that is aimed at (height 0.991 S) and how far the spline between nodes may be off
-// (height 0.6 %): never above S, and within 2 % of it with room for what a check measures differently.
-constexpr double kAim = 0.9955;
-constexpr double kOff = 0.003;
+// Use of the limits that is aimed at (height 0.993 S) and how far the spline between nodes may be off
+// (height 0.4 %): never above S, and within 2 % of it with room for what a check measures differently.
+constexpr double kAim = 0.9965;
+constexpr double kOff = 0.002;
 // Solved this closely, so that the slopes of the spline do not feel what is left.
 constexpr double kSolved = 3e-6;
 // Nodes are at least this part of a step apart: what is finer is no feature of the scallop.
@@ -58,7 +58,7 @@ class Front {
 
  private:
   double use(double t, double w, std::optional<double> slope) {
-    last_ = cusp(sheet_, before_, t, w, slope);
+    last_ = cusp(sheet_, before_, t, w, slope, false);
     return use_of_limits(task_, last_);
   }
 
@@ -214,7 +214,7 @@ PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last)
     for (const double t : samples_along(sheet, {g.lo(), g.hi()}, 24)) {
       if (!a.covers(t)) continue;
       const UvPoint p = g.at(t);
-      const Cusp c = cusp(sheet, before, t, p.w, p.w1);
+      const Cusp c = cusp(sheet, before, t, p.w, p.w1, false);
       f.scallop_min = std::min(f.scallop_min, c.height);
       f.scallop_max = std::max(f.scallop_max, c.height);
       f.side_step_max = std::max(f.side_step_max, c.side_step);

@@ -131,7 +131,8 @@ double height_at(const Sheet& sheet, double t, double w, Point3 centre) {
   return left_by(sheet, sheet.contact(t, w), centre);
 }
 
-Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope) {
+Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope,
+          bool ends) {
   const Contact b = sheet.contact(t, w);
   Cusp r;
   if (before.pole) {
@@ -150,7 +151,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   const Vec3 axis = unit(slope ? b.ct + *slope * b.cw : a.tangent);
   const double radius = sheet.radius();
   const geom::Interval ts = sheet.t_range();
-  const bool at_edge = t <= ts.lo || t >= ts.hi;
+  const bool at_edge = ends && (t <= ts.lo || t >= ts.hi);
   Point3 x;
   const Vec3 apart = a.c - b.c;
   // The end of the old path lies on the new one, or nearly: nothing stands between them.
