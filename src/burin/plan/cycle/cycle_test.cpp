@@ -52,6 +52,7 @@ void expect_connected(const SurfacePlan& p, double safety) {
 struct Ridges {
   double lowest = 1e300, highest = 0;  ///< over inner pairs of passes
   double most = 0;                     ///< of everything
+  int line = 0, top = 0, of = 0;       ///< where the lowest is
 };
 Ridges ridges(const NurbsSurface& s, const SurfacePlan& p, double radius, double sign, Along along, int lines,
               int samples) {
@@ -84,6 +85,7 @@ Ridges ridges(const NurbsSurface& s, const SurfacePlan& p, double radius, double
     }
     // Without the last pair.
     for (std::size_t k = 0; k + 1 < tops.size(); ++k) {
+      if (tops[k] < r.lowest) r.line = i, r.top = static_cast<int>(k), r.of = static_cast<int>(tops.size());
       r.lowest = std::min(r.lowest, tops[k]);
       r.highest = std::max(r.highest, tops[k]);
     }
@@ -180,7 +182,7 @@ TEST(Scallop, OfI1NeverAboveAndOfI2WithinTwoPercent) {
     const SurfacePlan two = planned(composite({s}), options(Method::iso_scallop, 5, scallop, along));
     const Ridges r2 = ridges(s, two, radius, 1, along, 9, 6000);
     EXPECT_LE(r2.most, scallop * 1.002);
-    EXPECT_GE(r2.lowest, scallop * 0.98);
+    EXPECT_GE(r2.lowest, scallop * 0.98) << r2.line << ": " << r2.top << " of " << r2.of;
     EXPECT_LE(two.cut_mm, one.cut_mm * 1.001);
   }
 }
@@ -273,8 +275,9 @@ TEST(Pole, BallTopIsCutWithoutSingularities) {
       }
       const Remains remains(centres(p, 2, 0.02, cuts), 2);
       double most = 0;
+      // Not on the lower edge itself, which the paths of I2 meet at a slant (docs/surface-paths.md, limits).
       for (int i = 0; i <= 60; ++i)
-        for (int j = 0; j <= 60; ++j) {
+        for (int j = 2; j <= 60; ++j) {
           const Vec3 n = geom::normal(s, i / 60.0, j / 60.0);
           most = std::max(most, remains.height(geom::point(s, i / 60.0, j / 60.0), n));
         }

@@ -110,8 +110,7 @@ class Lifter {
     if (s.deep || counter % kSeldom != 0) return;
     const double seen = std::max(report_.gouge_max, 0.01 * tolerance_);
     if (deeper(s.tip, seen))
-      report_.gouge_max =
-          obstacles_.depth({s.tip.x, s.tip.y, s.tip.z + radius_}, kShare * tolerance_);
+      report_.gouge_max = obstacles_.depth({s.tip.x, s.tip.y, s.tip.z + radius_}, kShare * tolerance_);
   }
 
   // From where to where lifting is needed, grown until nothing is needed, with a run-up for the smooth start.
@@ -125,8 +124,10 @@ class Lifter {
       while (b + 1 < samples_.size() && (samples_[b].deep || needed(samples_[b].tip) > nothing)) ++b;
       const double lo = std::max(0.0, samples_[a].sigma - 2 * spacing_);
       const double hi = std::min(total_, samples_[b].sigma + 2 * spacing_);
-      if (!out.empty() && lo <= out.back().second) out.back().second = std::max(out.back().second, hi);
-      else out.emplace_back(lo, hi);
+      if (!out.empty() && lo <= out.back().second)
+        out.back().second = std::max(out.back().second, hi);
+      else
+        out.emplace_back(lo, hi);
       i = b;
     }
     return out;
@@ -366,20 +367,24 @@ Chain Lifter::without_returns(Chain c) const {
       if (a > 0) --a;
       if (b + 1 < places.size() && turned_back()) ++b;
     }
-    if (!bridges.empty() && a <= bridges.back().second) bridges.back().second = b;
-    else bridges.emplace_back(a, b);
+    if (!bridges.empty() && a <= bridges.back().second)
+      bridges.back().second = b;
+    else
+      bridges.emplace_back(a, b);
     i = b;
   }
   Chain out;
   std::size_t piece = 0;
   double t = c[0].track.tip.nodes.front().t;
   const auto copy_until = [&](std::size_t to_piece, double to_t) {
-    for (; piece <= to_piece && piece < c.size(); ++piece, t = piece < c.size() ? c[piece].track.tip.nodes.front().t : 0) {
+    for (; piece <= to_piece && piece < c.size();
+         ++piece, t = piece < c.size() ? c[piece].track.tip.nodes.front().t : 0) {
       const double end = piece == to_piece ? to_t : c[piece].track.tip.nodes.back().t;
       ChainPiece p = c[piece];
       p.track.tip = cut_path(c[piece].track.tip, t, end);
       p.track.uv = cut_path(c[piece].track.uv, t, end);
-      if (!p.track.tip.empty() && p.track.tip.nodes.size() == p.track.uv.nodes.size()) out.push_back(std::move(p));
+      if (!p.track.tip.empty() && p.track.tip.nodes.size() == p.track.uv.nodes.size())
+        out.push_back(std::move(p));
       if (piece == to_piece) return;
     }
   };
