@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prints the benchmark medians as a table: burin's time, the peer's time, the ratio.
 
-A benchmark burin_X has the peer PEER_X with the same arguments (burin_offset/1/1 and clipper_offset/1/1)."""
+A benchmark burin_X has the peer PEER_X with the same arguments (burin_offset/1/1 and clipper_offset/1/1); there may be several peers."""
 import json
 import sys
 
@@ -14,7 +14,7 @@ for b in report["benchmarks"]:
         continue
     name = b["run_name"]
     unit = {"ns": 1e-6, "us": 1e-3, "ms": 1.0, "s": 1e3}[b["time_unit"]]
-    extra = {k: v for k, v in b.items() if k in ("segments", "arcs", "bound_mm")}
+    extra = {k: v for k, v in b.items() if k in ("segments", "arcs", "bound_mm", "million_per_s")}
     medians[name] = (b["cpu_time"] * unit, b.get("label", ""), extra)
 
 

@@ -31,6 +31,8 @@ int main(int argc, char** argv) {
     burin::cli::Cli cli;
     burin::cli::add_laser(cli);
     burin::cli::add_kerf(cli);
+    burin::cli::add_surfaces(cli);
+    burin::cli::add_cycle(cli);
     burin::cli::add_post(cli);
     return cli.run(argc, argv);
   } catch (const std::bad_alloc&) {

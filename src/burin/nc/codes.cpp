@@ -200,10 +200,10 @@ std::string code_name(char letter, int code) {
   return name + (fraction < 10 ? "0" : "") + std::to_string(fraction);
 }
 
-Result<Grouped> group_block(const Block& block, const std::string& file_name) {
+Result<Grouped> group_block(const Block& block, const std::string& file_name, bool m_is_value) {
   Grouped grouped;
   for (const Word& word : block.words) {
-    if (word.letter != 'G' && word.letter != 'M') {
+    if (word.letter != 'G' && (word.letter != 'M' || m_is_value)) {
       const Word*& slot = grouped.values[static_cast<std::size_t>(word.letter - 'A')];
       if (slot)
         return error(ErrorCode::syntax,

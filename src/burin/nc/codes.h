@@ -64,7 +64,7 @@ std::string code_name(char letter, int code);
 
 /// The words of one block by letter and by modal group; points into the block.
 struct Grouped {
-  std::array<const Word*, 26> values{};  ///< by letter, without G, M (and N)
+  std::array<const Word*, 26> values{};  ///< by letter, without G (and N), M as group_block() was told
   std::array<const Word*, static_cast<std::size_t>(Group::count)> groups{};
   std::vector<const Word*> other_m;  ///< M codes that are not known
 
@@ -76,7 +76,8 @@ struct Grouped {
     return word ? word->code() : -1;
   }
 };
-/// Errors: a letter twice, two codes of one group (syntax), an unknown G code (unsupported).
-Result<Grouped> group_block(const Block& block, const std::string& file_name);
+/// `m_is_value`: M is a number of this block, not a code. Errors: a letter twice, two codes of one group
+/// (syntax), an unknown G code (unsupported).
+Result<Grouped> group_block(const Block& block, const std::string& file_name, bool m_is_value = false);
 
 }  // namespace burin::nc

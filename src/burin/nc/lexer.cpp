@@ -147,7 +147,8 @@ std::optional<Failure> check_o_word(std::string_view line, std::size_t letter, s
 }
 
 /// Takes the comment that begins at `at`; moves `at` behind it.
-std::optional<Failure> read_comment(std::string_view line, std::size_t& at, std::string& comment) {
+std::optional<Failure> read_comment(std::string_view line, std::size_t& at, Block& block) {
+  std::string& comment = block.comment;
   const std::size_t begin = at;
   std::size_t end = line.size(), behind = line.size();
   if (line[at] == '(') {
@@ -162,9 +163,14 @@ std::optional<Failure> read_comment(std::string_view line, std::size_t& at, std:
       return Failure{ErrorCode::syntax,
                      "a control character in a comment, " + quoted(text[i]) + " (printable text)",
                      begin + 1 + i};
+  const std::size_t blanks = std::min(text.find_first_not_of(" \t"), text.size());
   text = trim(text);
   if (!text.empty()) {
-    if (!comment.empty()) comment += ' ';
+    if (comment.empty())
+      block.comment_column =
+          static_cast<int>(std::min<std::size_t>(begin + blanks + 2, std::numeric_limits<int>::max()));
+    else
+      comment += ' ';
     comment += text;
     std::replace(comment.begin(), comment.end(), '\t', ' ');
   }
@@ -212,7 +218,7 @@ std::optional<Failure> read_line(std::string_view line, Block& block) {
     std::optional<Failure> failure;
     const char c = line[at];
     if (c == '(' || c == ';') {
-      failure = read_comment(line, at, block.comment);
+      failure = read_comment(line, at, block);
     } else if (is_letter(c)) {
       failure = read_word(line, at, block);
     } else {
@@ -256,6 +262,7 @@ Result<bool> Lexer::next(Block& block) {
     block.skip = block.percent = false;
     block.words.clear();
     block.comment.clear();
+    block.comment_column = 0;
     if (const auto failure = read_line(line, block)) {
       const auto column =
           static_cast<int>(std::min<std::size_t>(failure->at + 1, std::numeric_limits<int>::max()));

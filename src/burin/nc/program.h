@@ -35,6 +35,7 @@ struct Block {
   bool percent = false;       ///< starts with '%': the first begins, the next ends the program
   std::vector<Word> words;    ///< without N
   std::string comment;
+  int comment_column = 0;  ///< where the text of the first comment begins
   /// The first word with this letter, nullptr when there is none.
   const Word* find(char letter) const;
 };
@@ -56,6 +57,8 @@ class Lexer {
   Lexer(std::string_view text, LexOptions options);
   /// Fills `block` with the next line that is not empty; false at the end of the text.
   Result<bool> next(Block& block);
+  /// Characters behind the block that was read last.
+  std::size_t remaining() const { return text_.size() - at_; }
 
  private:
   std::string_view text_;

@@ -19,6 +19,10 @@ constexpr double kNotable = 0.02;
 /// Largest turn of the tangent within a cell, rad: the axes' shares change with the direction.
 constexpr double kMaxTurn = 0.3;
 
+/// Largest turn of the path within a chord, rad. Beyond, a chord jumps over bends, and which ones changes
+/// with every change of the profile.
+constexpr double kChordTurn = 0.5;
+
 double largest(const Vec3& v) {
   return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
@@ -30,15 +34,16 @@ double chord_speed(double curvature, const Limits& limits) {
   const double eps = kMargin * limits.chord_error_mm;
   if (!(curvature > 0)) return std::numeric_limits<double>::infinity();
   const double rho = std::max(1 / curvature, eps);
-  return std::sqrt(8 * eps * rho - 4 * eps * eps) / limits.period_s;
+  const double chord = std::min(std::sqrt(8 * eps * rho - 4 * eps * eps), kChordTurn / curvature);
+  return chord / limits.period_s;
 }
 
 /// Speed that the derivatives at one place allow, without anything else.
 double own_speed(const ArcDerivatives& d, double feed, const Limits& limits) {
   double v = std::min(feed, chord_speed(geom::norm(d.d2), limits));
   const double bend = largest(d.d2), rate = largest(d.d3);
-  if (bend > 0) v = std::min(v, std::sqrt(limits.accel_mm_s2 / bend));
-  if (rate > 0) v = std::min(v, std::cbrt(limits.jerk_mm_s3 / rate));
+  if (bend * v * v > limits.accel_mm_s2) v = std::sqrt(limits.accel_mm_s2 / bend);
+  if (rate * v * v * v > limits.jerk_mm_s3) v = std::cbrt(limits.jerk_mm_s3 / rate);
   return std::max(v, safe_speed(limits));
 }
 
@@ -113,6 +118,7 @@ void CellMaker::piece(std::size_t i) {
   const bool line =
       piece_->length * geom::norm(d[1].d2) < 1e-12 && piece_->length * geom::norm(d[0].d2) < 1e-12;
   if (line) return divide(0, 1, d[0], d[2], kMaxDepth);
+  if (piece_->length < kMergePeriods * v * limits_.period_s) return divide(0, 1, d[0], d[2], kMaxDepth);
   const ArcDerivatives a = arc_derivatives(*piece_, 0.25), b = arc_derivatives(*piece_, 0.75);
   divide(0, 0.25, d[0], a, 0);
   divide(0.25, 0.5, a, d[1], 0);
@@ -124,7 +130,7 @@ void CellMaker::divide(double x0, double x1, const ArcDerivatives& a, const ArcD
   const double mid = 0.5 * (x0 + x1);
   const ArcDerivatives m = arc_derivatives(*piece_, mid);
   Cell cell;
-  cell.length = arc_length(*piece_, x0, x1);
+  cell.length = x0 == 0 && x1 == 1 ? piece_->length : arc_length(*piece_, x0, x1);
   const double v[3] = {own_speed(a, feed_, limits_), own_speed(m, feed_, limits_),
                        own_speed(b, feed_, limits_)};
   const double low = std::min({v[0], v[1], v[2]}), high = std::max({v[0], v[1], v[2]});
@@ -254,11 +260,6 @@ double solve_cubic(double v, double cubic, double square, double linear, double 
 }
 
 }  // namespace
-
-double safe_speed(const Limits& l) {
-  const double t = l.period_s;
-  return 0.1 * std::min({l.jerk_mm_s3 * t * t, l.accel_mm_s2 * t, 5 * l.chord_error_mm / t});
-}
 
 std::vector<Cell> make_cells(const Track& track, const TrackRun& run, const Limits& limits) {
   CellMaker maker(track, limits);

@@ -32,7 +32,4 @@ struct CellLimit {
 /// tangential part.
 CellLimit cell_limit(const Cell& cell, const Limits& limits, double tau, double reserve);
 
-/// A speed at which no path, however rough, passes a limit in the setpoints: 4 v / T^2 <= J / 2 and so on.
-double safe_speed(const Limits& limits);
-
 }  // namespace burin::servo

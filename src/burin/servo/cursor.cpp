@@ -76,14 +76,34 @@ std::size_t find_piece(const Piece* pieces, std::size_t end, std::size_t i, cons
   for (int step = 0; j < end && step < kNeighbours; ++step, ++j)
     if (distance(pieces[j].end, p) >= chord) return j;
   if (j >= end) return end;
-  // Pieces much shorter than a chord: by arc length, which is the chord but for its curvature.
+  // Pieces much shorter than a chord: about where the arc length says, then by doubling steps and halving.
   const double target = pieces[i].start + pieces[i].length + (chord - reach);
   const Piece* found = std::upper_bound(pieces + j, pieces + end, target,
                                         [](double s, const Piece& piece) { return s < piece.start; });
-  j = std::max(static_cast<std::size_t>(found - pieces) - 1, j);
-  for (int step = 0; step < kNeighbours && j > i + 1 && distance(pieces[j - 1].end, p) >= chord; ++step) --j;
-  for (int step = 0; step < kNeighbours && j < end && distance(pieces[j].end, p) < chord; ++step) ++j;
-  return j;
+  const std::size_t guess = std::max(static_cast<std::size_t>(found - pieces) - 1, j);
+  const auto within = [&](std::size_t k) { return distance(pieces[k].end, p) < chord; };
+  std::size_t lo = j - 1, hi = guess;  // lo is within the chord; look for the first after it that is not
+  if (within(guess)) {
+    lo = guess;
+    for (std::size_t step = 1;; step *= 2) {
+      hi = std::min(lo + step, end);
+      if (hi == end || !within(hi)) break;
+      lo = hi;
+    }
+  } else {
+    for (std::size_t step = 1; hi - lo > step; step *= 2) {
+      if (within(hi - step)) {
+        lo = hi - step;
+        break;
+      }
+      hi -= step;
+    }
+  }
+  while (hi - lo > 1) {
+    const std::size_t mid = lo + (hi - lo) / 2;
+    (within(mid) ? lo : hi) = mid;
+  }
+  return hi;
 }
 
 }  // namespace

@@ -25,7 +25,10 @@ std::vector<Step> lower_envelope(std::vector<Span>& spans, double total) {
   std::size_t next = 0;
   double at = 0;
   while (at < total) {
-    while (next < spans.size() && spans[next].begin <= at) open.push(spans[next++]);
+    for (; next < spans.size() && spans[next].begin <= at; ++next) {
+      const Span& span = spans[next];  // those that end before a lower one never show
+      if (open.empty() || span.value < open.top().value || span.end > open.top().end) open.push(span);
+    }
     while (!open.empty() && open.top().end <= at) open.pop();
     double until = next < spans.size() ? std::min(spans[next].begin, total) : total;
     if (!open.empty()) {

@@ -16,6 +16,13 @@ constexpr double kAim = 0.999;
 constexpr int kRounds = 12;      ///< of lowering where a limit was passed, then the whole run is slowed
 constexpr int kSlowRounds = 80;  ///< of that
 constexpr int kSettle = 8;       ///< rounds to meet the end
+/// An arc between two setpoints this much longer than its chord is more than a bend of 2 rad.
+constexpr double kSkip = 1.4;
+/// The end missed by less than the first share of the slowest step is taken at once; by more only when
+/// slowing at the bends that were jumped over (kSkipRounds of it) did not help, and only when the path was
+/// not used up long before the profile.
+constexpr double kMissed = 1e-3, kEarly = 0.1;
+constexpr int kSkipRounds = 6;
 /// Share of the acceleration and jerk that stays for changes of feed where the path is curved; both others
 /// are tried.
 constexpr double kReserve = 0.3;
@@ -173,6 +180,8 @@ RunPlanner::Passage RunPlanner::walk(bool measure_chords) {
         at = goal;
       }
       const double next = key(at);
+      // A bend smaller than the chord is jumped over: slower there, or the chords do not add up steadily.
+      if (next - keys[0] > kSkip * covered + rounding_) mark(keys[0], next, kSkip);
       if (measure_chords) {
         const double end = tick == ticks_ ? total_ + found.left_over : s;
         for (; cell < cells_.size() && cells_[cell].key1 <= next; ++cell) {
@@ -207,20 +216,29 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
   const double t = limits_.period_s;
   // What the last step adds must not show in the jerk, and the end is met to 1e-8 mm.
   const double target = std::max(std::min(1e-4 * limits_.jerk_mm_s3 * t * t * t, 1e-9), 4 * rounding_);
-  constexpr double kRemap = 1e-7;  // relative; above, the chords up to each cell are measured again
+  // Above these, relative, the chords up to each cell are measured again; below, the speed is scaled.
+  constexpr double kRemap = 1e-7, kScale = 1e-6;
   Passage passage;
+  double total_before = 0, left_before = 0;
   for (int i = 0; i < kSettle; ++i) {
     const bool last = i + 1 == kSettle;
     passage = walk(!last);
     const double left = passage.left_over;
     if (std::abs(left) <= target || last) break;
-    if (std::abs(left) > kRemap * total_ && i < kSettle / 2) {
+    if (std::abs(left) > (i < kSettle / 2 ? kRemap : kScale) * total_) {
       for (std::size_t c = 1; c < cells_.size(); ++c) cells_[c].s0 = cells_[c - 1].s1;
       cells_.back().s1 = total_ = total_ + left;
       if (auto made = make(); !made) return made.error();
+      total_before = 0;
     } else {
-      const double scale = (total_ + left) / total_;
-      total_ += left;
+      // Secant: where the curvature changes within a chord, the end moves by more or less than the length.
+      constexpr double kFlattest = -0.2;
+      const double slope = total_before > 0 ? (left - left_before) / (total_ - total_before) : -1;
+      const double step = slope < kFlattest ? -left / slope : left;
+      total_before = total_;
+      left_before = left;
+      const double scale = (total_ + step) / total_;
+      total_ += step;
       for (ProfilePiece& p : profile_) {
         p.s *= scale;
         p.v *= scale;
@@ -231,6 +249,11 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
     }
   }
   return passage;
+}
+
+bool RunPlanner::acceptable(const Passage& passage, double missed, bool both_ways) const {
+  const double room = missed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
+  return passage.worst <= 1 && passage.left_over >= -room && (!both_ways || passage.left_over <= room);
 }
 
 void RunPlanner::lower() {
@@ -247,7 +270,7 @@ Result<void> RunPlanner::plan() {
   for (Cell& c : cells_) {
     const double v = cell_limit(c, aim_, 3 * aim_.period_s, kReserve).v * aim_.period_s * c.curvature;
     c.s0 = s;
-    c.s1 = s += c.length * (1 - v * v / 24);
+    c.s1 = s += c.length / (1 + v * v / 24);
   }
   total_ = s;
   choose();
@@ -255,7 +278,7 @@ Result<void> RunPlanner::plan() {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (passage->worst <= 1) return {};
+    if (acceptable(*passage, round < kSkipRounds ? kMissed : kEarly, round < kSkipRounds)) return {};
     lower();
   }
   return slow_down(1.02);
@@ -267,7 +290,7 @@ Result<void> RunPlanner::slow_down(double factor) {
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (passage->worst <= 1) return {};
+    if (acceptable(*passage, kEarly, false)) return {};
     factor = std::clamp(std::sqrt(passage->worst), 1.02, 1.5);
   }
   return Error{ErrorCode::geometry,

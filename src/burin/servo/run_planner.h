@@ -41,6 +41,7 @@ class RunPlanner {
   double deviation(const double (&a)[3], const double (&b)[3], std::size_t piece, double x) const;
   double key(const Cursor& at) const;
   void mark(double key0, double key1, double ratio);
+  bool acceptable(const Passage& passage, double missed, bool both_ways) const;
   void lower();
 
   const Track& track_;

@@ -20,6 +20,11 @@ constexpr double kSamePoint = 1e-9;
 /// A corner of angle theta is passed at v = share J T^2 / theta, or else stopped at. From rest that speed
 /// takes 2 sqrt(v / J); below 10 periods it is not worth passing.
 constexpr double kStopAngle = 0.02;
+/// Pieces are halved until their parameter runs this evenly and they turn by no more than this, or are
+/// shorter than the slowest step; so that x is nearly the arc length, and sharp bends stand alone.
+constexpr double kEven = 1.25;
+constexpr double kTurn = 0.5;
+constexpr int kMaxHalvings = 20;
 /// Derivatives shorter than this, relative to the coefficients, have no direction left.
 constexpr double kVanishing = 1e-7;
 
@@ -39,6 +44,13 @@ Derivatives derivatives(const Piece& piece, double x) {
   return d;
 }
 
+Vec3 velocity(const Piece& piece, double x) {
+  const auto slope = [x](const double(&c)[6]) {
+    return (((5 * c[5] * x + 4 * c[4]) * x + 3 * c[3]) * x + 2 * c[2]) * x + c[1];
+  };
+  return {slope(piece.c[0]), slope(piece.c[1]), slope(piece.c[2])};
+}
+
 /// How far the piece can reach: sum of the coefficients' sizes.
 double extent(const Piece& piece) {
   double sum = 0;
@@ -54,6 +66,12 @@ bool acceptable(const QuinticNode& n) {
   const Vec3 p = n.p - Point3{};
   return std::isfinite(n.t) && finite(p) && finite(n.d1) && finite(n.d2) &&
          std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMaxCoordinate;
+}
+
+/// u and v; a curve has one parameter only, its v is not a number.
+bool acceptable_uv(const QuinticNode& n) {
+  return std::isfinite(n.t) && std::isfinite(n.p.x) && std::isfinite(n.d1.x) && std::isfinite(n.d2.x) &&
+         (std::isfinite(n.p.y) || std::isnan(n.p.y));
 }
 
 Error bad(std::size_t stretch, const std::string& what, ErrorCode code = ErrorCode::geometry) {
@@ -74,7 +92,7 @@ Result<void> check(const Stretch& stretch, std::size_t index) {
                    std::to_string(nodes.size()) + " (one for each)",
                ErrorCode::usage);
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (!acceptable(nodes[i]) || (uv && !acceptable(stretch.uv.nodes[i])))
+    if (!acceptable(nodes[i]) || (uv && !acceptable_uv(stretch.uv.nodes[i])))
       return bad(index, "a number of node " + std::to_string(i) +
                             " is not finite or too large (coordinates within 1e7 mm)");
     if (i > 0 && !(nodes[i].t > nodes[i - 1].t))
@@ -122,8 +140,70 @@ Vec3 direction(const Piece& piece, bool at_end) {
   return geom::norm(d.d3) > tiny ? geom::unit(d.d3) : Vec3{};
 }
 
+/// The part [x0, x1] of a piece as a piece.
+Piece part_of(const Piece& piece, double x0, double x1) {
+  Piece part = piece;
+  const double w = x1 - x0;
+  for (int k = 0; k < 5; ++k) {
+    const double(&c)[6] = piece.c[k];
+    double power = 1;
+    for (int d = 0; d < 6; ++d, power *= w) {  // Taylor coefficients at x0
+      double sum = 0;
+      for (int i = 5; i >= d; --i) {
+        double binomial = 1;
+        for (int b = 0; b < d; ++b) binomial = binomial * (i - b) / (b + 1);
+        sum = sum * x0 + binomial * c[i];
+      }
+      part.c[k][d] = sum * power;
+    }
+  }
+  if (x1 < 1)
+    for (int k = 0; k < 3; ++k) part.end[k] = horner(piece.c[k], x1);
+  return part;
+}
+
+/// The angle between the directions at both ends, and how unevenly the parameter runs.
+struct Shape {
+  double turn = 0, uneven = 1;
+};
+Shape shape_of(const Piece& piece, double x0, double x1) {
+  double low = 1e300, high = 0;
+  Vec3 first, last;
+  for (int i = 0; i <= 4; ++i) {
+    const Vec3 d = velocity(piece, x0 + (x1 - x0) * i / 4);
+    const double speed = geom::norm(d);
+    low = std::min(low, speed);
+    high = std::max(high, speed);
+    if (i == 0) first = d;
+    last = d;
+  }
+  return {std::atan2(geom::norm(geom::cross(first, last)), geom::dot(first, last)),
+          low > 0 ? high / low : 1e300};
+}
+
+/// Appends [x0, x1] of the piece, halved as far as needed.
+void add_parts(Track& track, const Piece& piece, double x0, double x1, double feed, double shortest,
+               int depth) {
+  const Shape shape = shape_of(piece, x0, x1);
+  const double length = arc_length(piece, x0, x1);
+  const bool smooth = shape.uneven <= kEven && shape.turn <= kTurn;
+  if (!smooth && length > shortest && depth < kMaxHalvings) {
+    const double mid = 0.5 * (x0 + x1);
+    add_parts(track, piece, x0, mid, feed, shortest, depth + 1);
+    return add_parts(track, piece, mid, x1, feed, shortest, depth + 1);
+  }
+  Piece part = x0 == 0 && x1 == 1 ? piece : part_of(piece, x0, x1);
+  if (x0 > 0)
+    for (int k = 0; k < 3; ++k) part.c[k][0] = track.pieces.back().end[k];
+  part.length = length;
+  part.rest_after = shape.turn > kTurn;  // a cusp, or all but one
+  track.pieces.push_back(part);
+  track.feed.push_back(feed);
+}
+
 Result<void> add_stretch(Track& track, const Stretch& stretch, const Limits& limits) {
   const double feed = (stretch.feed_mm_min > 0 ? stretch.feed_mm_min : limits.rapid_mm_min) / 60;
+  const double shortest = safe_speed(limits) * limits.period_s;
   for (std::size_t i = 0; i + 1 < stretch.path.nodes.size(); ++i) {
     Point3 from = track.start;
     if (!track.pieces.empty()) {
@@ -138,9 +218,7 @@ Result<void> add_stretch(Track& track, const Stretch& stretch, const Limits& lim
           "derivatives at node " + std::to_string(i) + " carry the path out of range (within 1e7 mm)",
           {}};
     if (reach < kSamePoint) continue;
-    piece.length = arc_length(piece, 0, 1);
-    track.pieces.push_back(piece);
-    track.feed.push_back(feed);
+    add_parts(track, piece, 0, 1, feed, shortest, 0);
   }
   return {};
 }
@@ -155,6 +233,7 @@ void cut_into_runs(Track& track) {
     Junction joint;
     joint.stop = i + 1 == n;
     if (i + 1 < n) joint = junction(track.pieces[i], track.pieces[i + 1]);
+    joint.stop = joint.stop || track.pieces[i].rest_after;
     track.junctions.push_back(joint);
     track.pieces[i].rest_after = joint.stop;
     if (!joint.stop) continue;
@@ -165,6 +244,11 @@ void cut_into_runs(Track& track) {
 }
 
 }  // namespace
+
+double safe_speed(const Limits& l) {
+  const double t = l.period_s;
+  return 0.1 * std::min({l.jerk_mm_s3 * t * t, l.accel_mm_s2 * t, 5 * l.chord_error_mm / t});
+}
 
 ArcDerivatives arc_derivatives(const Piece& piece, double x) {
   Derivatives d = derivatives(piece, x);
@@ -188,10 +272,10 @@ double arc_length(const Piece& piece, double x0, double x1) {
   constexpr double node[3] = {0, 0.53846931010568309, 0.90617984593866399};
   constexpr double weight[3] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
   const double mid = 0.5 * (x0 + x1), half = 0.5 * (x1 - x0);
-  double sum = weight[0] * geom::norm(derivatives(piece, mid).d1);
+  double sum = weight[0] * geom::norm(velocity(piece, mid));
   for (int i = 1; i < 3; ++i)
-    sum += weight[i] * (geom::norm(derivatives(piece, mid - half * node[i]).d1) +
-                        geom::norm(derivatives(piece, mid + half * node[i]).d1));
+    sum += weight[i] * (geom::norm(velocity(piece, mid - half * node[i])) +
+                        geom::norm(velocity(piece, mid + half * node[i])));
   return half * sum;
 }
 

@@ -19,6 +19,9 @@ ArcDerivatives arc_derivatives(const Piece& piece, double x);
 /// |d/dx| integrated over [x0, x1].
 double arc_length(const Piece& piece, double x0, double x1);
 
+/// A speed at which no path, however rough, passes a limit in the setpoints: 4 v / T^2 <= J / 2 and so on.
+double safe_speed(const Limits& limits);
+
 /// What changes at once between two pieces, per axis: |tangent|, |curvature vector|.
 struct Junction {
   double turn[3] = {0, 0, 0};

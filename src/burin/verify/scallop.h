@@ -11,10 +11,10 @@
 
 namespace burin::verify {
 
-/// Tip positions along one pass (a polyline dense enough that its chords may stand for the path; the caller
-/// samples it), in the order of the passes on that surface.
+/// Tip positions along one pass: polylines dense enough that their chords may stand for the path (the caller
+/// samples it), one for each stretch on the surface.
 struct TipPass {
-  std::vector<geom::Point3> tips;
+  std::vector<std::vector<geom::Point3>> stretches;
 };
 
 struct ScallopOptions {
@@ -29,8 +29,10 @@ struct ScallopOptions {
 
 struct ScallopReport {
   std::size_t samples = 0;
-  /// Material left above the surface between pass i and i + 1, largest along the line between them: the
-  /// minimum and maximum of that ridge over the length of the passes.
+  /// Material left above the surface between pass i and i + 1, largest along the line between them: minimum
+  /// and maximum of that ridge over the length of pass i. Where pass i + 1 has no place abreast (it ends, or
+  /// stops at a border), what is left counts for the maximum only. Infinite and 0 where there is no such
+  /// place at all.
   struct Ridge {
     double min_mm = 0, max_mm = 0;
   };

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace burin::geom::detail {
 namespace {
 
 /// Larger tables of matrices are not kept; the matrices are then made when a piece is entered.
 constexpr std::size_t kMaxTable = std::size_t{1} << 17;  // doubles, 1 MB
-constexpr int kMaxBuckets = 1 << 13;
+constexpr int kBucketsAPiece = 16, kMaxBuckets = 1 << 13;
 
 std::size_t squared(int degree) {
   const auto n = static_cast<std::size_t>(degree) + 1;
@@ -46,6 +47,7 @@ Axis::Axis(const std::vector<double>& knots, int degree) : degree_(degree), knot
     first_.push_back(static_cast<int>(k - p));
   }
   breaks_.push_back(knots.back());
+  above_end_ = std::nextafter(knots.back(), std::numeric_limits<double>::infinity());
   make_lookup();
   const std::size_t size = squared(degree), all = size * first_.size();
   if (all > kMaxTable) return;
@@ -65,7 +67,8 @@ int Axis::bucket(double t) const {
 void Axis::make_lookup() {
   // bucket() does not decrease with t, rounding included: so piece i of a t in bucket k starts in bucket k or
   // before it, and the next piece starts in bucket k or after it.
-  const int buckets = std::min(2 * pieces(), kMaxBuckets);
+  const int buckets =
+      static_cast<int>(std::min<std::int64_t>(kBucketsAPiece * std::int64_t{pieces()}, kMaxBuckets));
   last_.assign(static_cast<std::size_t>(buckets), 0);
   scale_ = buckets / (breaks_.back() - breaks_.front());
   for (int i = 0; i < pieces(); ++i) last_[static_cast<std::size_t>(bucket(lo(i)))] = i;
@@ -75,16 +78,12 @@ void Axis::make_lookup() {
 int Axis::piece(double t) const {
   if (!(t > breaks_.front())) return 0;
   const auto k = static_cast<std::size_t>(bucket(t));
-  int a = k == 0 ? 0 : last_[k - 1], b = last_[k];
-  while (a < b) {
-    const int m = a + (b - a + 1) / 2;
-    if (lo(m) <= t) {
-      a = m;
-    } else {
-      b = m - 1;
-    }
-  }
-  return a;
+  const int first = k == 0 ? 0 : last_[k - 1], last = last_[k];
+  // Hardly ever more than one piece begins in a bucket: no branch for that, places come in any order.
+  const int next = first + static_cast<int>(lo(std::min(first + 1, last)) <= t && first < last);
+  if (next == last || !(lo(next + 1) <= t)) return next;
+  const auto from = breaks_.begin() + next + 1, to = breaks_.begin() + last + 1;
+  return static_cast<int>(std::upper_bound(from, to, t) - breaks_.begin()) - 1;
 }
 
 void Axis::make_bezier(int piece, double* out) const {

@@ -23,6 +23,8 @@ class Axis {
   int pieces() const { return static_cast<int>(first_.size()); }
   double lo(int piece) const { return breaks_[static_cast<std::size_t>(piece)]; }
   double hi(int piece) const { return breaks_[static_cast<std::size_t>(piece) + 1]; }
+  /// The first number above the piece that does not belong to it: hi, but for the last piece.
+  double above(int piece) const { return piece + 1 < pieces() ? hi(piece) : above_end_; }
   /// Index of the first of the degree + 1 control points that act on the piece.
   int first_point(int piece) const { return first_[static_cast<std::size_t>(piece)]; }
   /// Piece with lo <= t < hi; the first or last one outside the domain; 0 when t is not a number.
@@ -44,6 +46,7 @@ class Axis {
   int degree_ = 0;
   std::vector<double> knots_, breaks_;
   std::vector<int> first_;
+  double above_end_ = 0;
   double scale_ = 0;                    // buckets per unit of the parameter
   std::vector<std::int32_t> last_;      // per bucket: the last piece that starts in it or before it
   std::vector<double> bezier_, power_;  // tables, empty when they would be large

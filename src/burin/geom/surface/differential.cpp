@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Normals and curvatures.
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
 
 #include "burin/geom/surface/basis.h"
 #include "burin/geom/surface/evaluate.h"
@@ -10,13 +14,72 @@ namespace {
 
 /// Sine of the angle of the partial derivatives below which they count as parallel (evaluate.h).
 constexpr double kParallel = 1e-12;
-
 /// Rounding of a partial derivative, relative to the size of the coordinates over the length of the span (for
 /// which |Suv| / |Su| stands): a derivative below it has no direction.
 constexpr double kRounding = 1e-14;
 
-double dir(double t, const std::vector<double>& knots) {
-  return t < 0.5 * (knots.front() + knots.back()) ? 1.0 : -1.0;
+/// Partial derivatives in lengths (times the width of the piece, so that u and v are alike).
+struct Lengths {
+  Vec3 u, v, uu, uv, vv, uuu, uuv, uvv, vvv;
+  double rounding = 0;  // of u and v
+};
+
+Lengths lengths(const NurbsSurface& s, double u, double v, Side side_u, Side side_v) {
+  const int i = detail::span_at(s.knots_u, s.degree_u, s.count_u, u, side_u);
+  const int j = detail::span_at(s.knots_v, s.degree_v, s.count_v, v, side_v);
+  const auto width = [](const std::vector<double>& knots, int span) {
+    return knots[static_cast<std::size_t>(span) + 1] - knots[static_cast<std::size_t>(span)];
+  };
+  const double a = width(s.knots_u, i), b = width(s.knots_v, j);
+  const SurfaceDerivatives3 d = derivatives3(s, u, v, side_u, side_v);
+  double reach = 0, heaviest = 0, lightest = std::numeric_limits<double>::infinity();
+  for (int y = j - s.degree_v; y <= j; ++y) {
+    for (int x = i - s.degree_u; x <= i; ++x) {
+      const HPoint& h = s.at(x, y);
+      reach = std::max(reach, norm(project(h) - Point3{}));
+      heaviest = std::max(heaviest, h.w);
+      lightest = std::min(lightest, h.w);
+    }
+  }
+  const int degree = std::max(s.degree_u, s.degree_v);
+  return {a * d.du,           b * d.dv,
+          a * a * d.duu,      a * b * d.duv,
+          b * b * d.dvv,      a * a * a * d.duuu,
+          a * a * b * d.duuv, a * b * b * d.duvv,
+          b * b * b * d.dvvv, kRounding * degree * reach * std::min(heaviest / lightest, 1e6)};
+}
+
+/// Su x Sv, k times differentiated in direction (a, b): the first one that does not vanish is the limit.
+/// Nothing when up to k = 2 all do.
+Vec3 limit(const Lengths& d, double a, double b) {
+  const Vec3 u1 = a * d.uu + b * d.uv, v1 = a * d.uv + b * d.vv;
+  const Vec3 u2 = a * a * d.uuu + (2 * a * b) * d.uuv + b * b * d.uvv;
+  const Vec3 v2 = a * a * d.uuv + (2 * a * b) * d.uvv + b * b * d.vvv;
+  const double size = std::max({norm(d.u), norm(d.v), norm(u1), norm(v1), norm(u2), norm(v2)});
+  // What rounding of any factor can bring, with room for the higher derivatives, which are rounded more.
+  const double least = 1e3 * d.rounding * size;
+  const Vec3 n1 = cross(u1, d.v) + cross(d.u, v1);
+  if (norm(n1) > least) return unit(n1);
+  const Vec3 n2 = cross(u2, d.v) + 2 * cross(u1, v1) + cross(d.u, v2);
+  return norm(n2) > least ? unit(n2) : Vec3{};
+}
+
+/// 1 where the domain goes on upwards from t, -1 in its upper half.
+double inwards(double t, const std::vector<double>& knots) {
+  return t < 0.5 * knots.front() + 0.5 * knots.back() ? 1.0 : -1.0;
+}
+
+/// Where the normal vector and its derivatives vanish: a look from a small step inside.
+Vec3 from_inside(const NurbsSurface& s, double u, double v, double a, double b) {
+  const double width_u = s.domain(Direction::u).length(), width_v = s.domain(Direction::v).length();
+  for (const double step : {1e-6, 1e-4, 1e-2}) {
+    for (const auto& [x, y] : {Vec2{a, b}, Vec2{a, 0}, Vec2{0, b}}) {
+      const Lengths d = lengths(s, u + x * step * width_u, v + y * step * width_v, Side::right, Side::right);
+      const Vec3 n = cross(d.u, d.v);
+      if (norm(n) > d.rounding * (norm(d.u) + norm(d.v))) return unit(n);
+    }
+  }
+  return {};
 }
 
 }  // namespace
@@ -29,21 +92,30 @@ Vec3 normal(const SurfaceDerivatives& d) {
 }
 
 Vec3 normal(const NurbsSurface& s, double u, double v) {
-  const SurfaceDerivatives d = derivatives(s, u, v);
-  const Vec3 n = normal(d);
-  if (n != Vec3{} || std::isnan(u) || std::isnan(v)) return n;
-  // Step inside, ever less: the first step that has an area.
   u = detail::clamped(s.knots_u, u);
   v = detail::clamped(s.knots_v, v);
-  const double hu = dir(u, s.knots_u) * s.domain(Direction::u).length();
-  const double hv = dir(v, s.knots_v) * s.domain(Direction::v).length();
-  for (const double step : {1e-7, 1e-5, 1e-3}) {
-    for (const auto& [a, b] : {Vec2{0, 1}, Vec2{1, 0}, Vec2{1, 1}}) {
-      const Vec3 m = normal(derivatives(s, u + a * step * hu, v + b * step * hv));
-      if (m != Vec3{}) return m;
-    }
+  if (std::isnan(u) || std::isnan(v)) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    return {nan, nan, nan};
   }
-  return {};
+  Lengths d = lengths(s, u, v, Side::right, Side::right);
+  const auto vanish = [&] { return std::pair{norm(d.u) <= d.rounding, norm(d.v) <= d.rounding}; };
+  auto [no_u, no_v] = vanish();
+  if (!no_u && !no_v) {
+    const Vec3 n = cross(unit(d.u), unit(d.v));
+    if (norm(n) > std::max(kParallel, d.rounding / norm(d.u) + d.rounding / norm(d.v))) return unit(n);
+  }
+  const double a = inwards(u, s.knots_u), b = inwards(v, s.knots_v);
+  d = lengths(s, u, v, a > 0 ? Side::right : Side::left, b > 0 ? Side::right : Side::left);
+  std::tie(no_u, no_v) = vanish();
+  if (no_u) d.u = {};
+  if (no_v) d.v = {};
+  // A collapsed edge has a normal at each of its parameters (think of a cone): straight away from it.
+  Vec3 n;
+  if (no_u && !no_v) n = limit(d, 0, b);
+  if (no_v && !no_u) n = limit(d, a, 0);
+  if (n == Vec3{}) n = limit(d, a, b);
+  return n == Vec3{} ? from_inside(s, u, v, a, b) : n;
 }
 
 Curvature curvature(const SurfaceDerivatives& d) {
@@ -60,6 +132,7 @@ Curvature curvature(const SurfaceDerivatives& d) {
   const double h22 = (k - 2 * f * m + f * f * l) / c / c;
   const double mean = 0.5 * (h11 + h22), half = 0.5 * (h11 - h22);
   const double radius = std::hypot(half, h12);
+  if (!std::isfinite(mean) || !std::isfinite(radius)) return {};
   Curvature r;
   r.k_min = mean - radius;
   r.k_max = mean + radius;

@@ -34,7 +34,7 @@ double* numbers(SurfaceDerivatives& d) {
 
 /// Pieces that are kept at a time (a power of two, at most kMaxSlots) may take this many numbers.
 constexpr std::size_t kMaxKept = std::size_t{1} << 15;  // 256 kB
-constexpr std::size_t kMaxSlots = 256;
+constexpr std::size_t kMaxSlots = 32;
 
 /// Rounding of a piece in powers, in units of rounding of the sum in Bernstein form: above this, Bernstein.
 /// 400 * 2^-53 = 4.4e-14 of the size of the net is the bound of the loss; measured are a few per cent of it.
@@ -115,12 +115,6 @@ bool Shared::powers(int iu, int iv) const {
   return growth() * (most / least) <= kMaxGrowth;
 }
 
-/// The first number that is not in the piece.
-double above(const Axis& axis, int piece) {
-  const double hi = axis.hi(piece);
-  return piece + 1 < axis.pieces() ? hi : std::nextafter(hi, std::numeric_limits<double>::infinity());
-}
-
 struct Aligned {
   void operator()(double* p) const { ::operator delete[](p, std::align_val_t{32}); }
 };
@@ -149,6 +143,11 @@ struct SurfaceEvaluator::State {
     const Piece& c = current->piece;
     return u >= c.u_lo && u < c.u_hi && v >= c.v_lo && v < c.v_hi;
   }
+  /// Whether it is worth asking for a group of four.
+  bool may_run(std::span<const Point2> uv, std::size_t i, std::size_t n) const {
+    return i + 4 <= n && current->powers && in_current(uv[i].x, uv[i].y) &&
+           in_current(uv[i + 3].x, uv[i + 3].y);
+  }
   const Slot& enter(int iu, int iv);
   const Slot& enter(double& u, double& v);
   const Slot& enter(double& u, double& v, Side side_u, Side side_v);
@@ -175,7 +174,7 @@ void SurfaceEvaluator::State::fill(Slot& slot, double* c, int iu, int iv) {
   slot.powers = shared->powers(iu, iv);
   Piece& p = slot.piece;
   p.u_lo = au.lo(iu), p.v_lo = av.lo(iv);
-  p.u_hi = above(au, iu), p.v_hi = above(av, iv);
+  p.u_hi = au.above(iu), p.v_hi = av.above(iv);
   p.u0 = slot.powers ? au.middle(iu) : au.lo(iu), p.u1 = au.hi(iu);
   p.v0 = slot.powers ? av.middle(iv) : av.lo(iv), p.v1 = av.hi(iv);
   p.p = s.degree_u, p.q = s.degree_v;
@@ -271,7 +270,7 @@ void SurfaceEvaluator::points(std::span<const Point2> uv, std::span<Point3> out)
   State& s = *state_;
   const std::size_t n = std::min(uv.size(), out.size());
   for (std::size_t i = 0; i < n;) {
-    if (s.current->powers) {
+    if (s.may_run(uv, i, n)) {
       i += s.shared->kernels.points(s.current->piece, &uv[i].x, n - i, numbers(out[i]));
       if (i >= n) break;
     }
@@ -284,7 +283,7 @@ void SurfaceEvaluator::derivatives(std::span<const Point2> uv, std::span<Surface
   State& s = *state_;
   const std::size_t n = std::min(uv.size(), out.size());
   for (std::size_t i = 0; i < n;) {
-    if (s.current->powers) {
+    if (s.may_run(uv, i, n)) {
       i += s.shared->kernels.derivatives_run(s.current->piece, &uv[i].x, n - i, numbers(out[i]));
       if (i >= n) break;
     }
@@ -341,7 +340,7 @@ bool SurfaceEvaluator::State::enter_iso(Direction moving, const Fixed& fixed, do
   (u ? shared->iso_u : shared->iso_v)
       .fix(axis.power(i, mu), fixed.values.data(), reinterpret_cast<const double*>(net), u ? 4 : step_v,
            u ? step_v : 4, axis.degree(), across.degree(), iso_space.get());
-  out = {axis.lo(i), above(axis, i), axis.middle(i), axis.degree(), iso_space.get()};
+  out = {axis.lo(i), axis.above(i), axis.middle(i), axis.degree(), iso_space.get()};
   return true;
 }
 

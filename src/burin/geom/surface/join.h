@@ -41,14 +41,20 @@ struct Joint {
       Continuity::g0;  ///< along the whole line, angles within 1e-6 rad, curvature 1e-4 relative
 };
 
-/// Where a part of an input patch went: u, v of the joined surface over `u` x `v`; the patch's own parameters
-/// are (u, v) mapped linearly: patch_u = pu[0] + pu[1] * u + pu[2] * v, patch_v = pv[0] + pv[1] * u + pv[2] *
-/// v. (Swaps and reversals are in the coefficients.)
+/// Where a part of an input patch went: u, v of the joined surface over `u` x `v`. The patch's own parameters
+/// follow in two steps (patch_parameters): along each direction the projective map that keeps the ends of the
+/// interval, x' = lo + L b f / (1 + (b - 1) f) with f = (x - lo) / L and b = bend (1 in nearly all cases: no
+/// change), then linearly: patch_u = pu[0] + pu[1] * u' + pu[2] * v', patch_v = pv[0] + pv[1] * u' + pv[2] *
+/// v'. (Swaps and reversals are in the coefficients.) After a forced join the map is an approximation.
 struct Member {
   std::size_t patch = 0;  ///< index into the input
   Interval u, v;
   std::array<double, 3> pu{}, pv{};
+  double bend_u = 1, bend_v = 1;  ///< > 0
 };
+/// Parameters of the patch for parameters of the joined surface, and back. Outside the member the maps go on.
+Point2 patch_parameters(const Member& member, Point2 joined);
+Point2 joined_parameters(const Member& member, Point2 patch);
 
 struct JoinedSurface {
   NurbsSurface surface;  ///< domain of u from 0, of v from 0

@@ -29,8 +29,10 @@ struct CadFace {
   std::string kind;  ///< "plane", "cylinder", "bspline", ...: what it was in the file
   geom::NurbsSurface surface;
   bool reversed = false;        ///< the face's outside is against Su x Sv
+  bool of_solid = false;        ///< of a solid: it has an outside; otherwise an open sheet with two sides
   bool trimmed = false;         ///< false: the loops are just the surface's four sides (loops is then empty)
   std::vector<TrimLoop> loops;  ///< first the outer one(s)
+  geom::Box3 box;               ///< contains the surface, closely
 };
 
 struct CadModel {

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "burin/verify/scallop.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "burin/geom/surface/closest.h"
+#include "burin/geom/surface/evaluate.h"
+#include "burin/verify/sweep.h"
+
+namespace burin::verify {
+namespace {
+
+using geom::Point3;
+using geom::Vec3;
+
+// Places on the line between two passes at which the height is taken before the ridge is narrowed down.
+constexpr int kAcross = 16;
+// Golden sections around the highest of them: the place of the ridge to 2e-5 of the side step.
+constexpr int kNarrow = 18;
+
+// An end of a stretch counts as abreast when the way to it is square to the path within this (cosine).
+constexpr double kSquare = 0.02;
+
+struct Station {
+  Point3 center;
+  Vec3 along;  ///< unit
+  geom::SurfacePoint foot;
+};
+
+/// Every chord of a pass.
+template <class Each>
+void for_chords(const TipPass& pass, const Each& each) {
+  for (const std::vector<Point3>& tips : pass.stretches)
+    for (std::size_t i = 0; i + 1 < tips.size(); ++i) each(tips[i], tips[i + 1]);
+}
+
+class Measure {
+ public:
+  Measure(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
+          const ScallopOptions& options)
+      : passes_(passes),
+        options_(options),
+        evaluator_(surface),
+        surface_(surface),
+        finder_(surface),
+        sweep_(segments(passes, options.radius_mm), options.radius_mm) {}
+
+  ScallopReport run() {
+    const double spacing = station_spacing();
+    for (std::size_t i = 0; i < passes_.size(); ++i) {
+      const std::vector<Station> from = stations(passes_[i], spacing);
+      for (const Station& s : from) gouge_at(s.foot.u, s.foot.v);
+      if (i + 1 < passes_.size()) report_.ridges.push_back(ridge(from, passes_[i + 1]));
+    }
+    bool any = false;
+    for (std::size_t i = 0; i + 1 < report_.ridges.size(); ++i) {
+      const ScallopReport::Ridge& r = report_.ridges[i];
+      report_.scallop_min_mm = any ? std::min(report_.scallop_min_mm, r.min_mm) : r.min_mm;
+      report_.scallop_max_mm = std::max(report_.scallop_max_mm, r.max_mm);
+      any = true;
+    }
+    return std::move(report_);
+  }
+
+ private:
+  static Point3 center_of(Point3 tip, double radius) { return {tip.x, tip.y, tip.z + radius}; }
+
+  static std::vector<Sweep::Segment> segments(const std::vector<TipPass>& passes, double radius) {
+    std::vector<Sweep::Segment> all;
+    for (const TipPass& pass : passes)
+      for_chords(pass, [&](Point3 a, Point3 b) {
+        all.push_back({center_of(a, radius), center_of(b, radius)});
+      });
+    return all;
+  }
+
+  double station_spacing() const {
+    double length = 0;
+    for (const TipPass& pass : passes_)
+      for_chords(pass, [&](Point3 a, Point3 b) { length += distance(a, b); });
+    const double wanted = options_.spacing_mm > 0 ? options_.spacing_mm : 0.25 * options_.radius_mm;
+    const double least = length * (kAcross + kNarrow) / std::max<double>(1, double(options_.max_samples));
+    return std::max(wanted, least);
+  }
+
+  Station station(Point3 tip, Vec3 along) const {
+    const Point3 center = center_of(tip, options_.radius_mm);
+    return {center, unit(along), finder_.find(center, 1e-6)};
+  }
+
+  /// Evenly along every stretch, both ends among them.
+  std::vector<Station> stations(const TipPass& pass, double spacing) const {
+    std::vector<Station> out;
+    for (const std::vector<Point3>& tips : pass.stretches) {
+      double left = 0;
+      for (std::size_t i = 0; i + 1 < tips.size(); ++i) {
+        const Vec3 way = tips[i + 1] - tips[i];
+        const double length = norm(way);
+        double at = left;
+        for (; at < length; at += spacing) out.push_back(station(tips[i] + (at / length) * way, way));
+        left = at - length;
+      }
+      if (tips.size() > 1) out.push_back(station(tips.back(), tips.back() - tips[tips.size() - 2]));
+    }
+    return out;
+  }
+
+  struct Abreast {
+    Point3 center;
+    bool square = false;  ///< the way there is square to the path
+  };
+  Abreast nearest_on(const TipPass& pass, const Station& from) const {
+    Abreast best;
+    double least = std::numeric_limits<double>::infinity();
+    for_chords(pass, [&](Point3 tip_a, Point3 tip_b) {
+      const Point3 a = center_of(tip_a, options_.radius_mm);
+      const Vec3 d = tip_b - tip_a;
+      const double l2 = dot(d, d);
+      const Point3 p = a + (l2 > 0 ? std::clamp(dot(from.center - a, d) / l2, 0.0, 1.0) : 0.0) * d;
+      const double far = distance(p, from.center);
+      if (far < least) {
+        least = far;
+        best = {p, std::abs(dot(p - from.center, from.along)) <= kSquare * far};
+      }
+    });
+    return best;
+  }
+
+  /// Height of what is left over the surface at (u, v): negative where it was cut too deep.
+  double height(double u, double v) {
+    ++report_.samples;
+    const double side = options_.normal_reversed ? -1 : 1;
+    const geom::SurfaceDerivatives d = evaluator_.derivatives(u, v);
+    Vec3 n = geom::normal(d);
+    if (n == Vec3{}) n = geom::normal(surface_, u, v);  // a pole
+    n = side * n;
+    const Point3 q = d.p + options_.stock_mm * n;
+    // What stands higher than the ball's radius was not cut at all.
+    const auto h = sweep_.entry(q, n, -2 * options_.radius_mm, options_.radius_mm);
+    return h ? *h : options_.radius_mm;
+  }
+
+  void gouge_at(double u, double v) {
+    const double h = height(u, v);
+    if (-h > report_.gouge_max_mm) {
+      report_.gouge_max_mm = -h;
+      report_.gouge_at = evaluator_.point(u, v);
+    }
+  }
+
+  ScallopReport::Ridge ridge(const std::vector<Station>& from, const TipPass& to) {
+    ScallopReport::Ridge ridge{std::numeric_limits<double>::infinity(), 0};
+    const bool any = std::any_of(to.stretches.begin(), to.stretches.end(),
+                                 [](const std::vector<Point3>& tips) { return tips.size() > 1; });
+    if (!any) return ridge;
+    for (const Station& a : from) {
+      const Abreast next = nearest_on(to, a);
+      const double h = highest(a.foot, finder_.find(next.center, 1e-6));
+      if (next.square) ridge.min_mm = std::min(ridge.min_mm, h);
+      ridge.max_mm = std::max(ridge.max_mm, h);
+    }
+    return ridge;
+  }
+
+  /// The highest place on the line between two feet (straight in the parameters).
+  double highest(const geom::SurfacePoint& a, const geom::SurfacePoint& b) {
+    const auto at = [&](double x) { return height(a.u + x * (b.u - a.u), a.v + x * (b.v - a.v)); };
+    int best = 0;
+    double most = -std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= kAcross; ++k) {
+      const double h = at(double(k) / kAcross);
+      if (h > most) most = h, best = k;
+    }
+    double lo = std::max(0, best - 1) / double(kAcross), hi = std::min(kAcross, best + 1) / double(kAcross);
+    constexpr double kGolden = 0.6180339887498949;
+    double x1 = hi - kGolden * (hi - lo), x2 = lo + kGolden * (hi - lo);
+    double h1 = at(x1), h2 = at(x2);
+    for (int k = 0; k < kNarrow; ++k) {
+      if (h1 > h2) {
+        hi = x2, x2 = x1, h2 = h1;
+        h1 = at(x1 = hi - kGolden * (hi - lo));
+      } else {
+        lo = x1, x1 = x2, h1 = h2;
+        h2 = at(x2 = lo + kGolden * (hi - lo));
+      }
+    }
+    return std::max({most, h1, h2});
+  }
+
+  const std::vector<TipPass>& passes_;
+  const ScallopOptions& options_;
+  geom::SurfaceEvaluator evaluator_;
+  const geom::NurbsSurface& surface_;
+  geom::ClosestPointFinder finder_;
+  Sweep sweep_;
+  ScallopReport report_;
+};
+
+}  // namespace
+
+ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vector<TipPass>& passes,
+                              const ScallopOptions& options) {
+  return Measure(surface, passes, options).run();
+}
+
+}  // namespace burin::verify

@@ -1,0 +1,8 @@
+; expect 4:8 control points for
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.23 U4000000 V4000000 D5. F500. S0.01
+X0. Y0. Z0. W1.
+X10.
+X0. Y10.
+X10.

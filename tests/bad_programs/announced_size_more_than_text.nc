@@ -1,0 +1,8 @@
+; expect 4:8 10000 control points for
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.23 U100 V100 D5. F500. S0.01
+X0. Y0. Z0. W1.
+X10.
+X0. Y10.
+X10.

@@ -1,0 +1,10 @@
+; expect 5:1 G6.2 while G91 is in force
+G21 G90 G17
+G00 X0. Y0. Z20.
+G91
+G06.2 P3 K0 X0. Y0. Z20. R1. F100.
+K0 X5. Y5.
+K0 X10. Y0.
+K1
+K1
+K1

@@ -1,0 +1,9 @@
+; expect 8:1 a control point behind knots without points
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.2 P3 K0 X0. Y0. Z20. R1. F100.
+K0 X5. Y5.
+K0 X10. Y0.
+K1
+K1 X5.
+K1

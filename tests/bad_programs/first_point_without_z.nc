@@ -1,0 +1,8 @@
+; expect 5:1 the first control point without Z
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.23 U2 V2 P2 Q2 D5. L0. F500. S0.01
+X0. Y0. W1.
+X10.
+X0. Y10.
+X10.

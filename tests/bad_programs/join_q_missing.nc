@@ -1,0 +1,15 @@
+; expect 4:18 N30 is not the number of a surface behind G106.2
+G21 G90 G17
+G00 X0. Y0. Z20.
+G106.2 I1 E1 P10 Q30 W15. D5. M1. S0.01 F500.
+N10 G06.23 U2 V2 P2 Q2 D5. L0. F500. S0.01
+X0. Y0. Z0. W1.
+X10.
+X0. Y10.
+X10.
+N20 G06.23 U2 V2 P2 Q2 D5. L0. F500. S0.01
+X10. Y0. Z0. W1.
+X20.
+X10. Y10.
+X20.
+M30

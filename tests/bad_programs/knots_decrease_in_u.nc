@@ -1,0 +1,19 @@
+; expect 14:1 knot 4 of U decreases
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.23 U3 V2 P2 Q2 D5. F500. S0.01
+X0. Y0. Z0.
+X5.
+X10.
+X0. Y9.
+X5.
+X10.
+K0
+K0
+K5
+K4
+K4
+K0
+K0
+K1
+K1

@@ -1,0 +1,10 @@
+; expect 4:13 L0: a number of repeats
+G21 G90 G17
+G00 X0. Y0. Z20.
+G106.1 W40. L0
+G06.23 U2 V2 P2 Q2 D5. L0. F500. S0.01
+X0. Y0. Z0. W1.
+X10.
+X0. Y10.
+X10.
+G80

@@ -1,0 +1,8 @@
+; expect 4:1 G6.23 without V
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.23 U2 P2 Q2 D5. F500. S0.01
+X0. Y0. Z0. W1.
+X10.
+X0. Y10.
+X10.

@@ -1,0 +1,10 @@
+; expect 9:18 BURIN TRIM LOOP needs one number of points
+G21 G90 G17
+G00 X0. Y0. Z20.
+G06.23 U2 V2 P2 Q2 D5. L0. F500. S0.01
+X0. Y0. Z0. W1.
+X10.
+X0. Y10.
+X10.
+(BURIN TRIM LOOP 2)
+(BURIN TRIM 0,0 1,1)

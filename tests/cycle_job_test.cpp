@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// Properties of the whole surface job on random surfaces: program text -> join -> plan -> CL, NC, setpoints,
+// measured by code that shares nothing with the planner, and read back.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "burin/cl/apt.h"
+#include "burin/geom/surface/evaluate.h"
+#include "burin/geom/surface/modify.h"
+#include "burin/job/cycle_job.h"
+#include "burin/nc/program.h"
+#include "burin/post/emit.h"
+#include "burin/servo/measure.h"
+#include "burin/verify/scallop.h"
+
+namespace burin {
+namespace {
+
+using geom::NurbsSurface;
+using geom::Point3;
+using geom::Vec3;
+
+/// Bicubic, bent gently enough for a ball of radius 3: bumps of a few tenths over 40 x 30 mm.
+NurbsSurface bumpy(std::mt19937& random, double height = 1.5) {
+  std::uniform_real_distribution<double> number(-1, 1);
+  NurbsSurface s;
+  s.degree_u = s.degree_v = 3;
+  s.count_u = 7;
+  s.count_v = 6;
+  s.knots_u = geom::clamped_uniform_knots(7, 3);
+  s.knots_v = geom::clamped_uniform_knots(6, 3);
+  for (int j = 0; j < 6; ++j)
+    for (int i = 0; i < 7; ++i)
+      s.points.push_back(
+          geom::homogeneous({40.0 * i / 6, 30.0 * j / 5, height * number(random) + 4 * std::sin(0.5 * i)},
+                            1 + 0.2 * number(random)));
+  return s;
+}
+
+nc::SurfaceBlock block(int number, NurbsSurface surface) {
+  nc::SurfaceBlock b;
+  b.number = number;
+  b.surface = std::move(surface);
+  b.tool_diameter = 6;
+  b.feed = 1500;
+  b.scallop = 0.02;
+  return b;
+}
+
+std::string program(const std::vector<nc::SurfaceBlock>& blocks, nc::PathMethod method, double safety = 30) {
+  nc::SurfaceWriteOptions options;
+  options.name = "random";
+  options.method = method;
+  options.tool_diameter = 6;
+  options.scallop = 0.02;
+  options.feed = 1500;
+  options.safety_z = safety;
+  options.decimals = 9;
+  auto text = nc::write_surface_program(blocks, options);
+  EXPECT_TRUE(text.ok()) << text.error().to_string();
+  return text.ok() ? *text : "";
+}
+
+job::CycleJob make(const std::string& text, job::CycleOptions options = {}) {
+  Diagnostics diagnostics;
+  options.file_name = "random.nc";
+  auto job = job::make_cycle_job(text, options, diagnostics, nullptr);
+  EXPECT_TRUE(job.ok()) << (job.ok() ? "" : job.error().to_string());
+  return job.ok() ? *std::move(job) : job::CycleJob{};
+}
+
+/// Tips of every pass of one surface, dense enough that chords stand for the path.
+std::vector<verify::TipPass> tips_of(const job::CycleRun& run, int surface) {
+  std::map<int, verify::TipPass> passes;
+  for (const cycle::Motion& m : run.plan.motions) {
+    if (m.kind != cycle::MotionKind::cut || m.surface != surface) continue;
+    std::vector<Point3> tips{m.path.start()};
+    for (std::size_t i = 0; i + 1 < m.path.nodes.size(); ++i) {
+      // Chords of 0.06 mm leave a bend of radius 3 by 1.5e-4 mm.
+      const int chords = 1 + int(geom::piece_length(m.path, i) / 0.06);
+      for (int k = 1; k <= chords; ++k) tips.push_back(geom::evaluate_piece(m.path, i, double(k) / chords).p);
+    }
+    passes[m.pass].stretches.push_back(std::move(tips));
+  }
+  std::vector<verify::TipPass> out;
+  for (auto& [number, pass] : passes) out.push_back(std::move(pass));
+  return out;
+}
+
+bool reversed_normal(const NurbsSurface& s) {
+  const geom::Interval u = s.domain(geom::Direction::u), v = s.domain(geom::Direction::v);
+  return geom::normal(s, 0.5 * (u.lo + u.hi), 0.5 * (v.lo + v.hi)).z < 0;
+}
+
+TEST(CycleJob, ScallopIsWhatWasAskedFor) {
+  std::mt19937 random(20);
+  for (int i = 0; i < 6; ++i) {
+    const auto method = i % 2 ? nc::PathMethod::iso_scallop : nc::PathMethod::iso_parametric;
+    const job::CycleJob job = make(program({block(10, bumpy(random))}, method));
+    ASSERT_EQ(job.runs.size(), 1u);
+    if (job.lifted > 0) continue;  // bent tighter than the ball: heights follow the lift
+    const NurbsSurface& s = job.surfaces[0].composite.surfaces[0].surface;
+    const verify::ScallopReport report = measure_scallop(
+        s, tips_of(job.runs[0], 0), {.radius_mm = 3, .normal_reversed = reversed_normal(s), .spacing_mm = 2});
+    EXPECT_LE(report.scallop_max_mm, method == nc::PathMethod::iso_scallop ? 0.02 * 1.02 : 0.02 * (1 + 1e-6))
+        << i;
+    if (method == nc::PathMethod::iso_scallop) {
+      EXPECT_GE(report.scallop_min_mm, 0.02 * 0.98) << i;
+    }
+    EXPECT_LT(report.gouge_max_mm, 1e-3);
+    EXPECT_GT(report.ridges.size(), 10u);
+  }
+}
+
+TEST(CycleJob, CutPatchesGiveTheSamePathAsTheWhole) {
+  std::mt19937 random(4);
+  const NurbsSurface whole = bumpy(random);
+  std::vector<nc::SurfaceBlock> blocks;
+  int number = 10;
+  for (const geom::Interval v : {geom::Interval{0, 0.4}, geom::Interval{0.4, 1}})
+    for (const geom::Interval u : {geom::Interval{0, 0.3}, geom::Interval{0.3, 0.8}, geom::Interval{0.8, 1}})
+      blocks.push_back(block(number += 10, geom::sub_surface(whole, u, v)));
+  blocks[1].surface = geom::reversed(blocks[1].surface, geom::Direction::u);
+  blocks[4].surface = geom::swapped(blocks[4].surface);
+  std::swap(blocks[2].surface, blocks[5].surface);
+  const job::CycleJob pieces = make(program(blocks, nc::PathMethod::iso_parametric));
+  const job::CycleJob one = make(program({block(10, whole)}, nc::PathMethod::iso_parametric));
+  ASSERT_EQ(pieces.surfaces_out, 1u);
+  // The same surface up to where its parameters run: nearly the same number of passes and the same length
+  // (the pieces' knots and so their steps of constant parameter are the same lines).
+  EXPECT_NEAR(double(pieces.paths), double(one.paths), 1 + 0.02 * double(one.paths));
+  EXPECT_NEAR(pieces.cut_mm, one.cut_mm, 0.03 * one.cut_mm);
+}
+
+TEST(CycleJob, MovesWithThePart) {
+  std::mt19937 random(9);
+  const NurbsSurface s = bumpy(random);
+  const Vec3 by{100, -50, 8};
+  const job::CycleJob a = make(program({block(10, s)}, nc::PathMethod::iso_scallop, 30));
+  const job::CycleJob b =
+      make(program({block(10, geom::translated(s, by))}, nc::PathMethod::iso_scallop, 38));
+  ASSERT_EQ(a.paths, b.paths);
+  EXPECT_NEAR(a.cut_mm, b.cut_mm, 1e-4 * a.cut_mm);
+  const auto last_cut = [](const job::CycleJob& job) {
+    Point3 p;
+    for (const cycle::Motion& m : job.runs[0].plan.motions)
+      if (m.kind == cycle::MotionKind::cut) p = m.path.end();
+    return p;
+  };
+  EXPECT_LT(distance(last_cut(a) + by, last_cut(b)), 1e-5);
+}
+
+TEST(CycleJob, NcReadsBackAsTheSamePath) {
+  std::mt19937 random(31);
+  const job::CycleJob job = make(program({block(10, bumpy(random))}, nc::PathMethod::iso_parametric));
+  Diagnostics diagnostics;
+  ASSERT_TRUE(cl::validate(job.cl).ok()) << cl::validate(job.cl).error().to_string();
+  for (const char* name : {"linuxcnc", "fanuc", "grbl"}) {
+    const auto dialect = post::find_dialect(name);
+    auto nc = post::emit(job.cl, *dialect, {.write_z = true}, diagnostics);
+    ASSERT_TRUE(nc.ok()) << nc.error().to_string();
+    auto back = nc::interpret(nc->text, {}, diagnostics);
+    ASSERT_TRUE(back.ok()) << name << ": " << back.error().to_string();
+    EXPECT_NEAR(cl::totals(*back).feed_mm, cl::totals(job.cl).feed_mm, 1e-3 * cl::totals(job.cl).feed_mm);
+  }
+  const auto text = cl::write_apt(job.cl);
+  auto again = cl::read_apt(text, {}, diagnostics);
+  ASSERT_TRUE(again.ok());
+  EXPECT_EQ(again->move_count(), job.cl.move_count());
+}
+
+TEST(CycleJob, StretchesFollowEachOther) {
+  std::mt19937 random(12);
+  const job::CycleJob job =
+      make(program({block(10, bumpy(random)), block(20, geom::translated(bumpy(random), {60, 0, 0}))},
+                   nc::PathMethod::iso_scallop));
+  ASSERT_GT(job.stretches.size(), 10u);
+  Point3 at = job.program.start;
+  for (const servo::Stretch& s : job.stretches) {
+    EXPECT_LT(distance(at, s.path.start()), 1e-9);
+    at = s.path.end();
+    // Rapids stay at or above the highest tip except straight down onto the safety height.
+    if (s.feed_mm_min == 0) {
+      EXPECT_GE(std::max(s.path.start().z, s.path.end().z), 29.999);
+    }
+  }
+}
+
+TEST(CycleJob, SetpointsKeepTheLimits) {
+  std::mt19937 random(17);
+  Diagnostics diagnostics;
+  for (int i = 0; i < 3; ++i) {
+    const job::CycleJob job = make(program({block(10, bumpy(random, 3.0))}, nc::PathMethod::iso_parametric));
+    servo::Limits limits;
+    limits.accel_mm_s2 = 1000.0 * (i + 1);
+    auto plan = servo::plan(job.stretches, limits, diagnostics);
+    ASSERT_TRUE(plan.ok()) << plan.error().to_string();
+    const std::vector<servo::Setpoint> s = servo::run(*plan);
+    const double t = limits.period_s;
+    double accel = 0, jerk = 0;
+    const auto axis = [&](std::size_t k, int a) { return a == 0 ? s[k].x : a == 1 ? s[k].y : s[k].z; };
+    for (int a = 0; a < 3; ++a)
+      for (std::size_t k = 3; k < s.size(); ++k) {
+        accel = std::max(accel, std::abs(axis(k, a) - 2 * axis(k - 1, a) + axis(k - 2, a)) / (t * t));
+        jerk =
+            std::max(jerk, std::abs(axis(k, a) - 3 * axis(k - 1, a) + 3 * axis(k - 2, a) - axis(k - 3, a)) /
+                               (t * t * t));
+      }
+    EXPECT_LE(accel, limits.accel_mm_s2 * (1 + 1e-9));
+    EXPECT_LE(jerk,
+              limits.jerk_mm_s3 * (1 + 1e-6) + 1);  // 1: rounding of coordinates near 100 mm, 8 eps / T^3
+    EXPECT_LT(distance(Point3{s.back().x, s.back().y, s.back().z}, job.stretches.back().path.end()), 1e-9);
+    const servo::Quality q = servo::measure(*plan, s);
+    EXPECT_NEAR(q.accel_max_mm_s2, accel, 1e-6 * accel);
+    EXPECT_NEAR(q.jerk_max_mm_s3, jerk, 1e-6 * jerk);
+    EXPECT_LE(q.chord_error_max_mm, limits.chord_error_mm);
+    EXPECT_LT(q.feed_fluctuation_max, 1e-4);
+  }
+}
+
+TEST(CycleJob, SameBytesEveryTime) {
+  std::mt19937 random(2);
+  const std::string mm = program({block(10, bumpy(random))}, nc::PathMethod::iso_parametric);
+  const job::CycleJob a = make(mm), b = make(mm);
+  EXPECT_EQ(cl::write_apt(a.cl), cl::write_apt(b.cl));
+}
+
+}  // namespace
+}  // namespace burin
