@@ -176,11 +176,11 @@ TEST(Scallop, OfI1NeverAboveAndOfI2WithinTwoPercent) {
   const double radius = 2.5, scallop = 0.02;
   for (const Along along : {Along::u, Along::v}) {
     const SurfacePlan one = planned(composite({s}), options(Method::iso_parametric, 5, scallop, along));
-    const Ridges r1 = ridges(s, one, radius, 1, along, 9, 6000);
+    const Ridges r1 = ridges(s, one, radius, 1, along, 5, 5000);
     EXPECT_LE(r1.most, scallop * 1.0005);
     EXPECT_GE(r1.highest, scallop * 0.9);
     const SurfacePlan two = planned(composite({s}), options(Method::iso_scallop, 5, scallop, along));
-    const Ridges r2 = ridges(s, two, radius, 1, along, 9, 6000);
+    const Ridges r2 = ridges(s, two, radius, 1, along, 5, 5000);
     EXPECT_LE(r2.most, scallop * 1.002);
     EXPECT_GE(r2.lowest, scallop * 0.98) << r2.line << ": " << r2.top << " of " << r2.of;
     EXPECT_LE(two.cut_mm, one.cut_mm * 1.001);
@@ -208,7 +208,22 @@ TEST(Concave, CylinderSharperThanTheBallIsLiftedToTheDropCutterHeight) {
       }
     }
   }
-  EXPECT_LE(deepest(s, centres(p, radius, 0.1, cuts), radius, 200), 0.011);
+  EXPECT_LE(deepest(s, centres(p, radius, 0.3, cuts), radius, 60), 0.011);
+}
+
+TEST(Concave, PathsAcrossAValleySharperThanTheBallDoNotRunBackwards) {
+  const NurbsSurface s = cylinder({0, 0, 0}, 2, geom::radians(-150), geom::radians(-30), 10);
+  for (const Method method : {Method::iso_parametric, Method::iso_scallop}) {
+    PlanOptions o = options(method, 6, 0.02, Along::u);
+    o.side_step = 0.5;
+    const SurfacePlan p = planned(composite({s}), o);
+    expect_connected(p, 60);
+    EXPECT_LE(p.paths, 30u);
+    EXPECT_EQ(p.lifted, p.paths);
+    EXPECT_LE(deepest(s, centres(p, 3, 0.3, cuts), 3, 60), 0.011);
+    // The ball fits between the edges only near the middle: no path is longer than the valley is wide.
+    EXPECT_LE(p.cut_mm, 4.0 * static_cast<double>(p.paths));
+  }
 }
 
 TEST(Gouge, StepBetweenTwoSurfaces) {

@@ -158,22 +158,27 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   constexpr double kAlong = 0.9;
   if (a.at_end && std::abs(dot(apart, axis)) > kAlong * norm(apart)) return r;
   if (!cusp_point(b.c, axis, a.c, radius, down, x)) {
-    r.height = kNoOverlap;
-    return r;
+    // The two centres face each other at a slant: the plane between them instead of the one across the path.
+    const Vec3 square = unit(axis - (dot(axis, apart) / dot(apart, apart)) * apart);
+    if (!cusp_point(b.c, square, a.c, radius, down, x)) {
+      r.height = kNoOverlap;
+      return r;
+    }
   }
   // The nearest centre of the old path to the cusp itself; the paths are nearly parallel, so that this
-  // settles at once.
+  // settles at once. Where the surface is bent more sharply than the ball another part of the old path may
+  // be nearer: that is no neighbour.
   constexpr int kRounds = 3;
   const double step = distance(b.c, a.c);
   for (int i = 0; i < kRounds; ++i) {
     const NearestCentre::Place next = before.centres.find(x);
+    if (distance(next.c, b.c) > 2 * step) break;
     const double moved = distance(next.c, a.c);
-    a = next;
     if (!(moved > 1e-4 * step)) break;
-    if (!cusp_point(b.c, axis, a.c, radius, down, x)) {
-      r.height = kNoOverlap;
-      return r;
-    }
+    Point3 y;
+    if (!cusp_point(b.c, axis, next.c, radius, down, y)) break;
+    a = next;
+    x = y;
   }
   wa = before.path->w_at(a.s);
   r.s = a.s;
