@@ -80,9 +80,9 @@ inline NurbsSurface ball_part(Point3 centre, double radius, double a0, double a1
     for (int i = 0; i < 3; ++i) {
       double r = radius * scale[j] * std::cos(angle[j]);
       if (std::abs(r) < 1e-12 * radius) r = 0;
-      s.points.push_back(geom::homogeneous({centre.x + r * cx[i], centre.y + r * cy[i],
-                                            centre.z + radius * scale[j] * std::sin(angle[j])},
-                                           weight[j] * wu[i]));
+      s.points.push_back(geom::homogeneous(
+          {centre.x + r * cx[i], centre.y + r * cy[i], centre.z + radius * scale[j] * std::sin(angle[j])},
+          weight[j] * wu[i]));
     }
   return s;
 }

@@ -52,6 +52,7 @@ void expect_connected(const SurfacePlan& p, double safety) {
 struct Ridges {
   double lowest = 1e300, highest = 0;  ///< over inner pairs of passes
   double most = 0;                     ///< of everything
+  int line = 0, top = 0, of = 0;       ///< where the lowest is
 };
 Ridges ridges(const NurbsSurface& s, const SurfacePlan& p, double radius, double sign, Along along, int lines,
               int samples) {
@@ -84,6 +85,7 @@ Ridges ridges(const NurbsSurface& s, const SurfacePlan& p, double radius, double
     }
     // Without the last pair.
     for (std::size_t k = 0; k + 1 < tops.size(); ++k) {
+      if (tops[k] < r.lowest) r.line = i, r.top = static_cast<int>(k), r.of = static_cast<int>(tops.size());
       r.lowest = std::min(r.lowest, tops[k]);
       r.highest = std::max(r.highest, tops[k]);
     }
@@ -98,7 +100,7 @@ TEST(Plane, StepOfAFlatSurfaceFollowsTheClosedForm) {
   for (const Method method : {Method::iso_parametric, Method::iso_scallop}) {
     const SurfacePlan p = planned(c, options(method, 2 * radius, s));
     expect_connected(p, 60);
-    EXPECT_EQ(p.paths, static_cast<std::size_t>(std::ceil(10 / (d * 0.9955))) + 1);
+    EXPECT_EQ(p.paths, static_cast<std::size_t>(std::ceil(10 / (d * 0.9965))) + 1);
     EXPECT_EQ(p.lifted, 0u);
     for (const PassFigures& f : p.figures) {
       EXPECT_LE(f.scallop_max, s);
@@ -174,13 +176,13 @@ TEST(Scallop, OfI1NeverAboveAndOfI2WithinTwoPercent) {
   const double radius = 2.5, scallop = 0.02;
   for (const Along along : {Along::u, Along::v}) {
     const SurfacePlan one = planned(composite({s}), options(Method::iso_parametric, 5, scallop, along));
-    const Ridges r1 = ridges(s, one, radius, 1, along, 9, 6000);
+    const Ridges r1 = ridges(s, one, radius, 1, along, 5, 5000);
     EXPECT_LE(r1.most, scallop * 1.0005);
     EXPECT_GE(r1.highest, scallop * 0.9);
     const SurfacePlan two = planned(composite({s}), options(Method::iso_scallop, 5, scallop, along));
-    const Ridges r2 = ridges(s, two, radius, 1, along, 9, 6000);
+    const Ridges r2 = ridges(s, two, radius, 1, along, 5, 5000);
     EXPECT_LE(r2.most, scallop * 1.002);
-    EXPECT_GE(r2.lowest, scallop * 0.98);
+    EXPECT_GE(r2.lowest, scallop * 0.98) << r2.line << ": " << r2.top << " of " << r2.of;
     EXPECT_LE(two.cut_mm, one.cut_mm * 1.001);
   }
 }
@@ -206,7 +208,22 @@ TEST(Concave, CylinderSharperThanTheBallIsLiftedToTheDropCutterHeight) {
       }
     }
   }
-  EXPECT_LE(deepest(s, centres(p, radius, 0.1, cuts), radius, 200), 0.011);
+  EXPECT_LE(deepest(s, centres(p, radius, 0.3, cuts), radius, 60), 0.011);
+}
+
+TEST(Concave, PathsAcrossAValleySharperThanTheBallDoNotRunBackwards) {
+  const NurbsSurface s = cylinder({0, 0, 0}, 2, geom::radians(-150), geom::radians(-30), 10);
+  for (const Method method : {Method::iso_parametric, Method::iso_scallop}) {
+    PlanOptions o = options(method, 6, 0.02, Along::u);
+    o.side_step = 0.5;
+    const SurfacePlan p = planned(composite({s}), o);
+    expect_connected(p, 60);
+    EXPECT_LE(p.paths, 30u);
+    EXPECT_EQ(p.lifted, p.paths);
+    EXPECT_LE(deepest(s, centres(p, 3, 0.3, cuts), 3, 60), 0.011);
+    // The ball fits between the edges only near the middle: no path is longer than the valley is wide.
+    EXPECT_LE(p.cut_mm, 4.0 * static_cast<double>(p.paths));
+  }
 }
 
 TEST(Gouge, StepBetweenTwoSurfaces) {
@@ -273,8 +290,9 @@ TEST(Pole, BallTopIsCutWithoutSingularities) {
       }
       const Remains remains(centres(p, 2, 0.02, cuts), 2);
       double most = 0;
+      // Not on the lower edge itself, which the paths of I2 meet at a slant (docs/surface-paths.md, limits).
       for (int i = 0; i <= 60; ++i)
-        for (int j = 0; j <= 60; ++j) {
+        for (int j = 2; j <= 60; ++j) {
           const Vec3 n = geom::normal(s, i / 60.0, j / 60.0);
           most = std::max(most, remains.height(geom::point(s, i / 60.0, j / 60.0), n));
         }

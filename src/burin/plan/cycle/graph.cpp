@@ -25,7 +25,8 @@ double end_slope(const double* x, const double* y, std::size_t count, std::ptrdi
   // Where the data turn steeply (a path that meets the border nearly square to the others) the polynomial
   // would swing: no more than thrice the slope of the end's own interval.
   const double secant = (y[step] - y[0]) / (x[step] - x[0]);
-  if (n > 2) slope = secant >= 0 ? std::clamp(slope, -secant, 3 * secant) : std::clamp(slope, 3 * secant, -secant);
+  if (n > 2)
+    slope = secant >= 0 ? std::clamp(slope, -secant, 3 * secant) : std::clamp(slope, 3 * secant, -secant);
   return slope;
 }
 

@@ -55,7 +55,7 @@ class Stepper {
   static constexpr int kSamples = 48;
 
   double at(const Before& before, double t, double w, Worst& r) const {
-    const Cusp c = cusp(sheet_, before, t, w, 0.0);
+    const Cusp c = cusp(sheet_, before, t, w, 0.0, true);
     const double use = use_of_limits(task_, c);
     r.figures.scallop_min = std::min(r.figures.scallop_min, c.height);
     r.figures.scallop_max = std::max(r.figures.scallop_max, c.height);

@@ -8,10 +8,10 @@
 namespace burin::cycle {
 namespace {
 
-// Use of the limits that is aimed at (height 0.991 S) and how far the spline between nodes may be off
-// (height 0.6 %): never above S, and within 2 % of it with room for what a check measures differently.
-constexpr double kAim = 0.9955;
-constexpr double kOff = 0.003;
+// Use of the limits that is aimed at (height 0.993 S) and how far the spline between nodes may be off
+// (height 0.4 %): never above S, and within 2 % of it with room for what a check measures differently.
+constexpr double kAim = 0.9965;
+constexpr double kOff = 0.002;
 // Solved this closely, so that the slopes of the spline do not feel what is left.
 constexpr double kSolved = 3e-6;
 // Nodes are at least this part of a step apart: what is finer is no feature of the scallop.
@@ -44,11 +44,13 @@ class Front {
 
   /// The next path; no graphs when all of the border is reached.
   std::vector<Graph> advance(const std::vector<double>& places, PairFigures& figures) {
-    for (const double t : places) nodes_.push_back(solve(t));
+    for (const double t : places) nodes_.push_back(solve(t, std::nullopt, 0));
     std::vector<Graph> graphs;
     for (int round = 0;; ++round) {
       close_ends();
       graphs = fit();
+      // Now the direction of the path is known, and with it the plane that the cusp lies in.
+      if (settle(graphs)) graphs = fit();
       if (round == kRounds || nodes_.size() > kMostNodes) break;
       if (!refine(graphs)) break;
     }
@@ -58,24 +60,24 @@ class Front {
 
  private:
   double use(double t, double w, std::optional<double> slope) {
-    last_ = cusp(sheet_, before_, t, w, slope);
+    last_ = cusp(sheet_, before_, t, w, slope, false);
     return use_of_limits(task_, last_);
   }
 
   double start_w(double t) const { return previous_ == nullptr ? task_.w.lo : previous_->w_at(t); }
 
-  Node solve(double t) {
+  Node solve(double t, std::optional<double> slope, double guess) {
     if (previous_ != nullptr && !previous_->covers(t)) return {t, task_.w.hi, State::done};
     const double w0 = start_w(t);
     if (!(w0 < task_.w.hi)) return {t, task_.w.hi, State::done};
     double ok = 0, bad = -1;  // steps known to keep and to break the limits
-    double step = guess_ > 0 ? guess_ : first_step(sheet_, task_, t, w0);
+    double step = guess > 0 ? guess : guess_ > 0 ? guess_ : first_step(sheet_, task_, t, w0);
     double best_step = step, best_off = 1e300, last_step = 0, last_use = 0;
     constexpr int kIterations = 40;
     for (int i = 0; i < kIterations; ++i) {
       const bool border = step >= task_.w.hi - w0;
       if (border) step = task_.w.hi - w0;
-      const double u = use(t, border ? task_.w.hi : w0 + step, std::nullopt);
+      const double u = use(t, border ? task_.w.hi : w0 + step, slope);
       if (border && u <= kAim + kOff) return at_border(t, w0);
       if (std::abs(u - kAim) < best_off) best_off = std::abs(u - kAim), best_step = step;
       if (best_off < kSolved) break;
@@ -130,12 +132,13 @@ class Front {
       const double mid = 0.5 * (in + out);
       if (!(std::min(in, out) < mid && mid < std::max(in, out))) break;
       const bool covered = previous_ == nullptr || previous_->covers(mid);
-      const bool inside = covered && start_w(mid) < task_.w.hi && use(mid, task_.w.hi, std::nullopt) > kAim + kOff;
+      const bool inside =
+          covered && start_w(mid) < task_.w.hi && use(mid, task_.w.hi, std::nullopt) > kAim + kOff;
       (inside ? in : out) = mid;
       if (std::abs(out - in) < 1e-7 * task_.t.length()) break;
     }
     // The path reaches the border there, or turns back before it (then it just ends).
-    return solve(in);
+    return solve(in, std::nullopt, 0);
   }
 
   std::vector<Graph> fit() const {
@@ -159,11 +162,33 @@ class Front {
     return graphs;
   }
 
+  // Solves nodes again whose use of the limits is another one with the slope of the spline.
+  bool settle(const std::vector<Graph>& graphs) {
+    bool changed = false;
+    std::size_t i = 0;
+    for (const Graph& g : graphs)
+      for (const double t : g.t) {
+        while (i < nodes_.size() && nodes_[i].t < t) ++i;
+        if (i == nodes_.size()) return changed;
+        Node& n = nodes_[i];
+        if (n.t != t || n.end || n.state != State::active) continue;
+        const double slope = g.at(t).w1;
+        const double u = use(t, n.w, slope);
+        const bool half_of_pole = pole_hi_ && u < kAim;
+        if (std::abs(u - kAim) < 0.25 * kOff || half_of_pole) continue;
+        const Node again = solve(t, slope, n.w - start_w(t));
+        if (again.state != State::active) continue;
+        n.w = again.w;
+        changed = true;
+      }
+    return changed;
+  }
+
   // Nodes between those where the spline leaves the wanted use of the limits.
   bool refine(const std::vector<Graph>& graphs) {
     figures_ = {};
     figures_.scallop_min = kNoOverlap;
-    std::vector<double> wanted;
+    std::vector<UvPoint> wanted;
     for (const Graph& g : graphs)
       for (std::size_t i = 0; i + 1 < g.t.size(); ++i) {
         const double t = 0.5 * (g.t[i] + g.t[i + 1]);
@@ -174,11 +199,11 @@ class Front {
         const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
         if (!(apart > kFinest * last_.side_step)) continue;
         const bool half_of_pole = pole_hi_ && u < kAim;
-        if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(t);
+        if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(p);
       }
     if (wanted.empty()) return false;
     std::vector<Node> more;
-    for (const double t : wanted) more.push_back(solve(t));
+    for (const UvPoint& p : wanted) more.push_back(solve(p.t, p.w1, p.w - start_w(p.t)));
     std::vector<Node> all;
     std::merge(nodes_.begin(), nodes_.end(), more.begin(), more.end(), std::back_inserter(all),
                [](const Node& a, const Node& b) { return a.t < b.t; });
@@ -214,7 +239,7 @@ PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last)
     for (const double t : samples_along(sheet, {g.lo(), g.hi()}, 24)) {
       if (!a.covers(t)) continue;
       const UvPoint p = g.at(t);
-      const Cusp c = cusp(sheet, before, t, p.w, p.w1);
+      const Cusp c = cusp(sheet, before, t, p.w, p.w1, false);
       f.scallop_min = std::min(f.scallop_min, c.height);
       f.scallop_max = std::max(f.scallop_max, c.height);
       f.side_step_max = std::max(f.side_step_max, c.side_step);

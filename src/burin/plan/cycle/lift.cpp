@@ -110,8 +110,7 @@ class Lifter {
     if (s.deep || counter % kSeldom != 0) return;
     const double seen = std::max(report_.gouge_max, 0.01 * tolerance_);
     if (deeper(s.tip, seen))
-      report_.gouge_max =
-          obstacles_.depth({s.tip.x, s.tip.y, s.tip.z + radius_}, kShare * tolerance_);
+      report_.gouge_max = obstacles_.depth({s.tip.x, s.tip.y, s.tip.z + radius_}, kShare * tolerance_);
   }
 
   // From where to where lifting is needed, grown until nothing is needed, with a run-up for the smooth start.
@@ -125,8 +124,10 @@ class Lifter {
       while (b + 1 < samples_.size() && (samples_[b].deep || needed(samples_[b].tip) > nothing)) ++b;
       const double lo = std::max(0.0, samples_[a].sigma - 2 * spacing_);
       const double hi = std::min(total_, samples_[b].sigma + 2 * spacing_);
-      if (!out.empty() && lo <= out.back().second) out.back().second = std::max(out.back().second, hi);
-      else out.emplace_back(lo, hi);
+      if (!out.empty() && lo <= out.back().second)
+        out.back().second = std::max(out.back().second, hi);
+      else
+        out.emplace_back(lo, hi);
       i = b;
     }
     return out;
@@ -136,7 +137,8 @@ class Lifter {
     Chain out;
     for (std::size_t i = 0; i < chain_.size(); ++i) {
       const Scale& s = scales_[i];
-      if (s.sigma1 <= lo || s.sigma0 >= hi) continue;
+      if (s.sigma0 >= hi) break;
+      if (s.sigma1 <= lo) continue;
       ChainPiece p = chain_[i];
       if (s.sigma0 < lo || s.sigma1 > hi) {
         const double t0 = s.t0 + (std::max(lo, s.sigma0) - s.sigma0) / s.rate;
@@ -192,14 +194,16 @@ class Lifter {
     if (c.empty() || !(total > 0)) return c;
     const CubicFunction f = lift_function(c, scales, total, smooth_start, smooth_end);
     LiftPlace place;
-    for (std::size_t i = 0; i < c.size(); ++i) apply(c[i], scales[i], f, place);
+    const std::vector<double> breaks = f.breaks();
+    for (std::size_t i = 0; i < c.size(); ++i) apply(c[i], scales[i], f, breaks, place);
     if (place.height > 0) report_.places.push_back(place);
     return c;
   }
 
   static Point3 tip_on(const Chain& c, const std::vector<Scale>& scales, double sigma) {
-    std::size_t i = 0;
-    while (i + 1 < c.size() && scales[i].sigma1 < sigma) ++i;
+    const auto it = std::lower_bound(scales.begin(), scales.end(), sigma,
+                                     [](const Scale& s, double x) { return s.sigma1 < x; });
+    const std::size_t i = std::min(static_cast<std::size_t>(it - scales.begin()), c.size() - 1);
     const Scale& s = scales[i];
     return evaluate(c[i].track.tip, s.rate > 0 ? s.t0 + (sigma - s.sigma0) / s.rate : s.t0).p;
   }
@@ -275,14 +279,15 @@ class Lifter {
     }
   }
 
-  void apply(ChainPiece& p, const Scale& s, const CubicFunction& f, LiftPlace& place) const {
-    const std::vector<double> breaks = f.breaks();
+  void apply(ChainPiece& p, const Scale& s, const CubicFunction& f, const std::vector<double>& breaks,
+             LiftPlace& place) const {
     std::vector<double> ts;
     for (const QuinticNode& n : p.track.tip.nodes) ts.push_back(n.t);
     const double t1 = p.track.tip.nodes.back().t;
     if (s.rate > 0)
-      for (const double x : breaks)
-        if (x > s.sigma0 && x < s.sigma1) ts.push_back(s.t0 + (x - s.sigma0) / s.rate);
+      for (auto x = std::upper_bound(breaks.begin(), breaks.end(), s.sigma0);
+           x != breaks.end() && *x < s.sigma1; ++x)
+        ts.push_back(s.t0 + (*x - s.sigma0) / s.rate);
     std::sort(ts.begin(), ts.end());
     const double same = 1e-9 * (t1 - s.t0);
     QuinticPath tip, uv;
@@ -366,20 +371,24 @@ Chain Lifter::without_returns(Chain c) const {
       if (a > 0) --a;
       if (b + 1 < places.size() && turned_back()) ++b;
     }
-    if (!bridges.empty() && a <= bridges.back().second) bridges.back().second = b;
-    else bridges.emplace_back(a, b);
+    if (!bridges.empty() && a <= bridges.back().second)
+      bridges.back().second = b;
+    else
+      bridges.emplace_back(a, b);
     i = b;
   }
   Chain out;
   std::size_t piece = 0;
   double t = c[0].track.tip.nodes.front().t;
   const auto copy_until = [&](std::size_t to_piece, double to_t) {
-    for (; piece <= to_piece && piece < c.size(); ++piece, t = piece < c.size() ? c[piece].track.tip.nodes.front().t : 0) {
+    for (; piece <= to_piece && piece < c.size();
+         ++piece, t = piece < c.size() ? c[piece].track.tip.nodes.front().t : 0) {
       const double end = piece == to_piece ? to_t : c[piece].track.tip.nodes.back().t;
       ChainPiece p = c[piece];
       p.track.tip = cut_path(c[piece].track.tip, t, end);
       p.track.uv = cut_path(c[piece].track.uv, t, end);
-      if (!p.track.tip.empty() && p.track.tip.nodes.size() == p.track.uv.nodes.size()) out.push_back(std::move(p));
+      if (!p.track.tip.empty() && p.track.tip.nodes.size() == p.track.uv.nodes.size())
+        out.push_back(std::move(p));
       if (piece == to_piece) return;
     }
   };

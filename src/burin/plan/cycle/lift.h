@@ -31,9 +31,9 @@ struct LiftReport {
   double gouge_max = 0;           ///< what was left below the tolerance
 };
 
-/// Where the ball would cut deeper than `tolerance` the chain is raised to the no-gouge height (C2 along every
-/// piece); where the path would turn back on itself, because the surface is bent more sharply than the ball,
-/// the part that runs backwards is left out.
+/// Where the ball would cut deeper than `tolerance` the chain is raised to the no-gouge height (C2 along
+/// every piece); where the path would turn back on itself, because the surface is bent more sharply than the
+/// ball, the part that runs backwards is left out.
 void lift(Chain& chain, const Obstacles& obstacles, double radius, double tolerance, LiftReport& report);
 
 }  // namespace burin::cycle

@@ -112,7 +112,8 @@ void Obstacles::add_rectangle(const Region& region, std::uint32_t index, Interva
   geom::SurfaceEvaluator& evaluator = evaluators_[index];
   // Just inside, so that knots at the ends do not matter.
   for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < 3; ++i) s.p[j][i] = evaluator.point(u.lo + 0.5 * i * u.length(), v.lo + 0.5 * j * v.length());
+    for (int i = 0; i < 3; ++i)
+      s.p[j][i] = evaluator.point(u.lo + 0.5 * i * u.length(), v.lo + 0.5 * j * v.length());
   const double reach = radius_ + stock_;
   // Cells on a trimming loop reach beyond it by their size.
   const double largest = edge ? 0.02 * reach : 0.5 * reach;

@@ -16,8 +16,8 @@ class Obstacles {
  public:
   /// `regions`: one for each surface. `stock` is left on all of them. `fine_mm`: how flat the cells are that
   /// the surfaces are cut into; results do not depend on it, speed does.
-  Obstacles(const geom::Composite& composite, const std::vector<Region>& regions, double radius,
-            double stock, double fine_mm);
+  Obstacles(const geom::Composite& composite, const std::vector<Region>& regions, double radius, double stock,
+            double fine_mm);
 
   /// Nothing is cut deeper than `depth` by the ball (and its shank) whose centre is here.
   bool clear(geom::Point3 centre, double depth) const;

@@ -61,10 +61,11 @@ Pass constant_pass(const Sheet& sheet, const PassTask& task, double w) {
 }
 
 Error too_many_paths(const PassTask& task) {
-  return {ErrorCode::range,
-          "more than " + std::to_string(task.max_paths) +
-              " paths would be needed (a larger scallop S or side step M, or a larger tool, would be accepted)",
-          {}};
+  return {
+      ErrorCode::range,
+      "more than " + std::to_string(task.max_paths) +
+          " paths would be needed (a larger scallop S or side step M, or a larger tool, would be accepted)",
+      {}};
 }
 
 Error too_many_nodes() {

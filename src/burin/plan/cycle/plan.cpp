@@ -58,7 +58,10 @@ class SurfacePlanner {
  public:
   SurfacePlanner(const geom::Composite& composite, const std::vector<Trim>& trims, const PlanOptions& options,
                  Diagnostics& diagnostics)
-      : composite_(composite), options_(options), diagnostics_(diagnostics), radius_(0.5 * options.tool_diameter) {
+      : composite_(composite),
+        options_(options),
+        diagnostics_(diagnostics),
+        radius_(0.5 * options.tool_diameter) {
     for (const geom::JoinedSurface& s : composite.surfaces) regions_.emplace_back(s, trims);
     // The cusp is found from the path: a thousandth of it must not be the path's error.
     path_mm_ = std::min(options.path_mm, 1e-3 * options.scallop);
@@ -72,9 +75,10 @@ class SurfacePlanner {
       const double sign = side_that_looks_up(composite_.surfaces[i].surface);
       if (sign == 0) {
         ++steep;
-        diagnostics_.left_out("surface_steep", "surface " + std::to_string(i + 1) +
-                                                   " is vertical or degenerate everywhere and is not machined "
-                                                   "(its normal would have to look up somewhere)");
+        diagnostics_.left_out("surface_steep",
+                              "surface " + std::to_string(i + 1) +
+                                  " is vertical or degenerate everywhere and is not machined "
+                                  "(its normal would have to look up somewhere)");
         continue;
       }
       Result<SheetPlan> s = best_plan(i, sign);
@@ -86,13 +90,15 @@ class SurfacePlanner {
                    "no surface has a side that looks up (the normal must have a part along +Z in the middle)",
                    {}};
     if (chains.empty())
-      return Error{ErrorCode::geometry, "nothing is left to machine inside the trimming loops (at least one path)",
+      return Error{ErrorCode::geometry,
+                   "nothing is left to machine inside the trimming loops (at least one path)",
                    {}};
     const double highest = lift_all(chains, plan);
     if (highest > options_.safety_z + 1e-9)
       return Error{ErrorCode::usage,
-                   "the safety height W = " + mm(options_.safety_z) + " lies below the highest place of the tool's tip, " +
-                       mm(highest) + " (W of at least that would be accepted)",
+                   "the safety height W = " + mm(options_.safety_z) +
+                       " lies below the highest place of the tool's tip, " + mm(highest) +
+                       " (W of at least that would be accepted)",
                    {}};
     assemble(chains, start, plan);
     return plan;
@@ -117,8 +123,8 @@ class SurfacePlanner {
     const Sheet& sheet = sheets_.back();
     const PassTask task = task_of(sheet, region);
     if (!(task.t.length() > 0 && task.w.length() > 0)) return out;
-    Result<Passes> passes = options_.method == Method::iso_parametric ? iso_parametric(sheet, task)
-                                                                      : iso_scallop(sheet, task);
+    Result<Passes> passes =
+        options_.method == Method::iso_parametric ? iso_parametric(sheet, task) : iso_scallop(sheet, task);
     if (!passes) return passes.error();
     out.pairs = passes->pairs;
     out.paths = passes->passes.size();
@@ -153,8 +159,9 @@ class SurfacePlanner {
   void take(SheetPlan& s, std::size_t index, SurfacePlan& plan, std::vector<Chain>& chains) {
     if (chains.empty()) plan.along = s.along;
     if (s.chains.empty())
-      diagnostics_.left_out("surface_empty", "surface " + std::to_string(index + 1) +
-                                                 " has nothing inside its trimming loops and is not machined");
+      diagnostics_.left_out("surface_empty",
+                            "surface " + std::to_string(index + 1) +
+                                " has nothing inside its trimming loops and is not machined");
     plan.paths += s.paths;
     for (std::size_t k = 0; k < s.pairs.size(); ++k) {
       const PairFigures& f = s.pairs[k];
@@ -194,7 +201,8 @@ class SurfacePlanner {
       for (const LiftPlace& p : report.places)
         if (p.surface == i && (most == nullptr || p.height > most->height)) most = &p;
       if (most == nullptr) continue;
-      const auto count = std::count_if(lifted.begin(), lifted.end(), [i](const auto& l) { return l.first == i; });
+      const auto count =
+          std::count_if(lifted.begin(), lifted.end(), [i](const auto& l) { return l.first == i; });
       Warning w;
       w.code = "lifted";
       w.message = "surface " + std::to_string(i + 1) + ": " + std::to_string(count) +
@@ -261,7 +269,8 @@ Result<SurfacePlan> plan(const geom::Composite& composite, const std::vector<Tri
   try {
     return SurfacePlanner(composite, trims, options, diagnostics).run(start);
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::range, "the plan needs more memory than there is (a larger scallop S or side step M)", {}};
+    return Error{
+        ErrorCode::range, "the plan needs more memory than there is (a larger scallop S or side step M)", {}};
   }
 }
 

@@ -131,7 +131,8 @@ double height_at(const Sheet& sheet, double t, double w, Point3 centre) {
   return left_by(sheet, sheet.contact(t, w), centre);
 }
 
-Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope) {
+Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope,
+          bool ends) {
   const Contact b = sheet.contact(t, w);
   Cusp r;
   if (before.pole) {
@@ -150,29 +151,34 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   const Vec3 axis = unit(slope ? b.ct + *slope * b.cw : a.tangent);
   const double radius = sheet.radius();
   const geom::Interval ts = sheet.t_range();
-  const bool at_edge = t <= ts.lo || t >= ts.hi;
+  const bool at_edge = ends && (t <= ts.lo || t >= ts.hi);
   Point3 x;
   const Vec3 apart = a.c - b.c;
   // The end of the old path lies on the new one, or nearly: nothing stands between them.
   constexpr double kAlong = 0.9;
   if (a.at_end && std::abs(dot(apart, axis)) > kAlong * norm(apart)) return r;
   if (!cusp_point(b.c, axis, a.c, radius, down, x)) {
-    r.height = kNoOverlap;
-    return r;
+    // The two centres face each other at a slant: the plane between them instead of the one across the path.
+    const Vec3 square = unit(axis - (dot(axis, apart) / dot(apart, apart)) * apart);
+    if (!cusp_point(b.c, square, a.c, radius, down, x)) {
+      r.height = kNoOverlap;
+      return r;
+    }
   }
   // The nearest centre of the old path to the cusp itself; the paths are nearly parallel, so that this
-  // settles at once.
+  // settles at once. Where the surface is bent more sharply than the ball another part of the old path may
+  // be nearer: that is no neighbour.
   constexpr int kRounds = 3;
   const double step = distance(b.c, a.c);
   for (int i = 0; i < kRounds; ++i) {
     const NearestCentre::Place next = before.centres.find(x);
+    if (distance(next.c, b.c) > 2 * step) break;
     const double moved = distance(next.c, a.c);
-    a = next;
     if (!(moved > 1e-4 * step)) break;
-    if (!cusp_point(b.c, axis, a.c, radius, down, x)) {
-      r.height = kNoOverlap;
-      return r;
-    }
+    Point3 y;
+    if (!cusp_point(b.c, axis, next.c, radius, down, y)) break;
+    a = next;
+    x = y;
   }
   wa = before.path->w_at(a.s);
   r.s = a.s;

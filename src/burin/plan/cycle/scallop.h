@@ -40,8 +40,10 @@ struct Before {
 
 /// Between the path before and the ball at (t, w). `slope`: dw/dt of the new path there; when it is not known
 /// yet the direction of the old path counts. The cusp is where the sphere about the new centre, cut by the
-/// plane across the new path, meets the tube about the old path.
-Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope);
+/// plane across the new path, meets the tube about the old path. `ends`: at the ends of the paths also what
+/// stands on the edge of the surface beyond the end of the shorter one.
+Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope,
+          bool ends);
 
 /// Height left at a surface point by a single ball.
 double height_at(const Sheet& sheet, double t, double w, Point3 centre);

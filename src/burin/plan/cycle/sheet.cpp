@@ -71,10 +71,8 @@ double typical_length(const geom::NurbsSurface& s, Direction d) {
   const int nu = s.count_u, nv = s.count_v;
   for (int j = 0; j < nv; ++j)
     for (int i = 0; i < nu; ++i) {
-      if (d == Direction::u && i + 1 < nu)
-        sum += distance(project(s.at(i, j)), project(s.at(i + 1, j)));
-      if (d == Direction::v && j + 1 < nv)
-        sum += distance(project(s.at(i, j)), project(s.at(i, j + 1)));
+      if (d == Direction::u && i + 1 < nu) sum += distance(project(s.at(i, j)), project(s.at(i + 1, j)));
+      if (d == Direction::v && j + 1 < nv) sum += distance(project(s.at(i, j)), project(s.at(i, j + 1)));
     }
   const double lines = d == Direction::u ? nv : nu;
   return sum / lines / s.domain(d).length();

@@ -17,11 +17,11 @@ using geom::Vec3;
 
 /// One place with its tool.
 struct Contact {
-  Point3 s;       ///< on the surface
-  Vec3 st, sw;    ///< tangents
-  Vec3 n;         ///< unit, towards the tool
-  Point3 c;       ///< centre of the ball
-  Vec3 ct, cw;    ///< derivatives of the centre (those of the surface where degenerate)
+  Point3 s;                 ///< on the surface
+  Vec3 st, sw;              ///< tangents
+  Vec3 n;                   ///< unit, towards the tool
+  Point3 c;                 ///< centre of the ball
+  Vec3 ct, cw;              ///< derivatives of the centre (those of the surface where degenerate)
   bool degenerate = false;  ///< st and sw are parallel or vanish; n is a limit from inside
 };
 

@@ -118,8 +118,7 @@ class Builder {
     const QuinticNode &l = a.tip.nodes.back(), &r = b.front().tip;
     const double size = std::max(norm(l.d1), norm(r.d1));
     if (norm(l.d1 - r.d1) > kSameTangent * size) return false;
-    const double h =
-        std::max(l.t - a.tip.nodes[a.tip.nodes.size() - 2].t, b[1].tip.t - r.t);
+    const double h = std::max(l.t - a.tip.nodes[a.tip.nodes.size() - 2].t, b[1].tip.t - r.t);
     return 0.5 * kSecondBasis * h * h * norm(l.d2 - r.d2) <= 0.25 * path_mm_;
   }
 
@@ -229,8 +228,10 @@ Track build_track(const Sheet& sheet, geom::Point2 a, geom::Point2 b, double pat
     if (step == 0) return;
     for (const geom::Knot& k : knots) {
       const double s = (k.value - from) / step;
-      if (is_t) marks.push_back({s, true, false, k.value, 0});
-      else marks.push_back({s, false, true, 0, k.value});
+      if (is_t)
+        marks.push_back({s, true, false, k.value, 0});
+      else
+        marks.push_back({s, false, true, 0, k.value});
     }
   };
   add(sheet.t_knots(), a.x, d.x, true);
@@ -349,14 +350,20 @@ NearestCentre::Place NearestCentre::polish(Point3 p, std::size_t piece, std::siz
     } else if (next > 1 && x < 1) {
       x = 1;
     } else if (next < 0) {
-      if (interval > 0) --interval;
-      else if (piece > 0) interval = track[--piece].tip.nodes.size() - 2;
-      else break;
+      if (interval > 0)
+        --interval;
+      else if (piece > 0)
+        interval = track[--piece].tip.nodes.size() - 2;
+      else
+        break;
       x = 1;
     } else {
-      if (interval + 2 < tip.nodes.size()) ++interval;
-      else if (piece + 1 < track.size()) ++piece, interval = 0;
-      else break;
+      if (interval + 2 < tip.nodes.size())
+        ++interval;
+      else if (piece + 1 < track.size())
+        ++piece, interval = 0;
+      else
+        break;
       x = 0;
     }
   }

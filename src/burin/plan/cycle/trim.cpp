@@ -105,7 +105,8 @@ std::vector<Interval> Region::cut(const Graph& graph, Direction along) const {
     for (const double t : crossings(graph, turned(a), turned(b))) at.push_back(t);
   };
   for (const Part& part : parts_) {
-    const Point2 c[4] = {{part.u.lo, part.v.lo}, {part.u.hi, part.v.lo}, {part.u.hi, part.v.hi}, {part.u.lo, part.v.hi}};
+    const Point2 c[4] = {
+        {part.u.lo, part.v.lo}, {part.u.hi, part.v.lo}, {part.u.hi, part.v.hi}, {part.u.lo, part.v.hi}};
     for (int i = 0; i < 4; ++i) add(c[i], c[(i + 1) % 4]);
     for (const auto& loop : part.loops)
       for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) add(loop[j], loop[i]);
@@ -119,8 +120,10 @@ std::vector<Interval> Region::cut(const Graph& graph, Direction along) const {
     const double t = 0.5 * (a + b);
     const Point2 p = turned({t, graph.at(t).w});
     if (!inside(p.x, p.y)) continue;
-    if (!out.empty() && a - out.back().hi <= point) out.back().hi = b;
-    else out.push_back({a, b});
+    if (!out.empty() && a - out.back().hi <= point)
+      out.back().hi = b;
+    else
+      out.push_back({a, b});
   }
   return out;
 }
