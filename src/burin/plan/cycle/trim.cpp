@@ -12,16 +12,10 @@ using geom::Direction;
 using geom::Interval;
 using geom::Point2;
 
-// The parameters of the joined surface from those of a patch: the inverse of the member's linear map.
 std::vector<Point2> mapped(const geom::Member& m, const std::vector<Point2>& points) {
-  const double det = m.pu[1] * m.pv[2] - m.pu[2] * m.pv[1];
   std::vector<Point2> out;
-  if (det == 0) return out;
   out.reserve(points.size());
-  for (const Point2 p : points) {
-    const double a = p.x - m.pu[0], b = p.y - m.pv[0];
-    out.push_back({(a * m.pv[2] - b * m.pu[2]) / det, (b * m.pu[1] - a * m.pv[1]) / det});
-  }
+  for (const Point2 p : points) out.push_back(geom::joined_parameters(m, p));
   return out;
 }
 
