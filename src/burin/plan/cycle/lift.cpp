@@ -361,15 +361,22 @@ Chain Lifter::without_returns(Chain c) const {
   std::vector<std::pair<std::size_t, std::size_t>> bridges;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].back) continue;
-    std::size_t a = i > 0 ? i - 1 : 0, b = i;
-    while (b + 1 < places.size() && places[b].back) ++b;
+    // Inside one pass (or link): what follows is another path.
+    const auto same = [&](std::size_t k) {
+      const ChainPiece &p = c[places[k].piece], &q = c[places[i].piece];
+      return p.kind == q.kind && p.surface == q.surface && p.pass == q.pass;
+    };
+    std::size_t a = i > 0 && same(i - 1) ? i - 1 : i, b = i;
+    while (b + 1 < places.size() && places[b].back && same(b + 1)) ++b;
     const auto turned_back = [&] {
       const Vec3 d = places[b].tip - places[a].tip;
       return d.x * places[a].forward.x + d.y * places[a].forward.y < 0;
     };
-    while (turned_back() && (a > 0 || b + 1 < places.size())) {
-      if (a > 0) --a;
-      if (b + 1 < places.size() && turned_back()) ++b;
+    while (turned_back()) {
+      const bool before = a > 0 && same(a - 1), after = b + 1 < places.size() && same(b + 1);
+      if (!before && !after) break;
+      if (before) --a;
+      if (after && turned_back()) ++b;
     }
     if (!bridges.empty() && a <= bridges.back().second)
       bridges.back().second = b;
