@@ -208,13 +208,18 @@ class Lifter {
     return evaluate(c[i].track.tip, s.rate > 0 ? s.t0 + (sigma - s.sigma0) / s.rate : s.t0).p;
   }
 
-  // Breaks where the needed height bends; between them it is nearly straight.
+  // Breaks where the needed height bends; between them it is nearly straight, as seen at three places.
   void place_breaks(const Chain& c, const std::vector<Scale>& scales, double a, double na, double b,
                     double nb, std::vector<std::pair<double, double>>& out) const {
     const double mid = 0.5 * (a + b);
     const double need = needed(tip_on(c, scales, mid));
-    const double bend = std::abs(need - 0.5 * (na + nb));
-    if (bend > 0.2 * tolerance_ && b - a > kFinest * radius_) {
+    const double allowed = 0.1 * tolerance_;
+    bool bends = std::abs(need - 0.5 * (na + nb)) > allowed;
+    for (const double x : {0.25, 0.75}) {
+      if (bends) break;
+      bends = needed(tip_on(c, scales, a + x * (b - a))) - (na + x * (nb - na)) > allowed;
+    }
+    if (bends && b - a > kFinest * radius_) {
       place_breaks(c, scales, a, na, mid, need, out);
       place_breaks(c, scales, mid, need, b, nb, out);
       return;
@@ -237,6 +242,16 @@ class Lifter {
     }
     if (smooth_end) grid.insert(grid.end(), {total - run_up, total - 0.5 * run_up});
     grid.push_back(total);
+    // Pieces meet at corners, where the needed height has one as well.
+    for (const Scale& p : scales)
+      if (p.sigma1 > grid.front() && p.sigma1 < total) grid.push_back(p.sigma1);
+    std::sort(grid.begin(), grid.end());
+    std::vector<double> apart{grid.front()};
+    for (const double x : grid)
+      if (x - apart.back() > 1e-3 * spacing_ && (x == total || total - x > 1e-3 * spacing_))
+        apart.push_back(x);
+    grid = std::move(apart);
+    if (grid.back() != total) grid.push_back(total);
     std::vector<std::pair<double, double>> at{{0.0, needed(tip_on(c, scales, 0))}};
     for (std::size_t i = 1; i < grid.size(); ++i) {
       const auto [a, na] = at.back();
