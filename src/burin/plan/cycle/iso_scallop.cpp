@@ -18,6 +18,8 @@ constexpr double kSolved = 3e-6;
 constexpr double kFinest = 0.08;
 constexpr int kSamples = 32;
 constexpr int kRounds = 8;
+// Rounds in which all nodes follow the direction of the spline; later ones only add nodes.
+constexpr int kSettling = 2;
 constexpr std::size_t kMostNodes = 4000;
 
 enum class State {
@@ -50,7 +52,7 @@ class Front {
       close_ends();
       graphs = fit();
       // Now the direction of the path is known, and with it the plane that the cusp lies in.
-      if (settle(graphs)) graphs = fit();
+      if (round <= kSettling && settle(graphs)) graphs = fit();
       if (round == kRounds || nodes_.size() > kMostNodes) break;
       if (!refine(graphs)) break;
     }

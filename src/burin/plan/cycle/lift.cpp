@@ -208,13 +208,18 @@ class Lifter {
     return evaluate(c[i].track.tip, s.rate > 0 ? s.t0 + (sigma - s.sigma0) / s.rate : s.t0).p;
   }
 
-  // Breaks where the needed height bends; between them it is nearly straight.
+  // Breaks where the needed height bends; between them it is nearly straight, as seen at three places.
   void place_breaks(const Chain& c, const std::vector<Scale>& scales, double a, double na, double b,
                     double nb, std::vector<std::pair<double, double>>& out) const {
     const double mid = 0.5 * (a + b);
     const double need = needed(tip_on(c, scales, mid));
-    const double bend = std::abs(need - 0.5 * (na + nb));
-    if (bend > 0.2 * tolerance_ && b - a > kFinest * radius_) {
+    const double allowed = 0.1 * tolerance_;
+    bool bends = std::abs(need - 0.5 * (na + nb)) > allowed;
+    for (const double x : {0.25, 0.75}) {
+      if (bends) break;
+      bends = needed(tip_on(c, scales, a + x * (b - a))) - (na + x * (nb - na)) > allowed;
+    }
+    if (bends && b - a > kFinest * radius_) {
       place_breaks(c, scales, a, na, mid, need, out);
       place_breaks(c, scales, mid, need, b, nb, out);
       return;
@@ -237,6 +242,16 @@ class Lifter {
     }
     if (smooth_end) grid.insert(grid.end(), {total - run_up, total - 0.5 * run_up});
     grid.push_back(total);
+    // Pieces meet at corners, where the needed height has one as well.
+    for (const Scale& p : scales)
+      if (p.sigma1 > grid.front() && p.sigma1 < total) grid.push_back(p.sigma1);
+    std::sort(grid.begin(), grid.end());
+    std::vector<double> apart{grid.front()};
+    for (const double x : grid)
+      if (x - apart.back() > 1e-3 * spacing_ && (x == total || total - x > 1e-3 * spacing_))
+        apart.push_back(x);
+    grid = std::move(apart);
+    if (grid.back() != total) grid.push_back(total);
     std::vector<std::pair<double, double>> at{{0.0, needed(tip_on(c, scales, 0))}};
     for (std::size_t i = 1; i < grid.size(); ++i) {
       const auto [a, na] = at.back();
@@ -361,15 +376,22 @@ Chain Lifter::without_returns(Chain c) const {
   std::vector<std::pair<std::size_t, std::size_t>> bridges;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (!places[i].back) continue;
-    std::size_t a = i > 0 ? i - 1 : 0, b = i;
-    while (b + 1 < places.size() && places[b].back) ++b;
+    // Inside one pass (or link): what follows is another path.
+    const auto same = [&](std::size_t k) {
+      const ChainPiece &p = c[places[k].piece], &q = c[places[i].piece];
+      return p.kind == q.kind && p.surface == q.surface && p.pass == q.pass;
+    };
+    std::size_t a = i > 0 && same(i - 1) ? i - 1 : i, b = i;
+    while (b + 1 < places.size() && places[b].back && same(b + 1)) ++b;
     const auto turned_back = [&] {
       const Vec3 d = places[b].tip - places[a].tip;
       return d.x * places[a].forward.x + d.y * places[a].forward.y < 0;
     };
-    while (turned_back() && (a > 0 || b + 1 < places.size())) {
-      if (a > 0) --a;
-      if (b + 1 < places.size() && turned_back()) ++b;
+    while (turned_back()) {
+      const bool before = a > 0 && same(a - 1), after = b + 1 < places.size() && same(b + 1);
+      if (!before && !after) break;
+      if (before) --a;
+      if (after && turned_back()) ++b;
     }
     if (!bridges.empty() && a <= bridges.back().second)
       bridges.back().second = b;

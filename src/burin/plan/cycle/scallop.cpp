@@ -148,7 +148,11 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   const Vec3 down = -(at_a.n + b.n);
   r.s = a.s;
   r.side_step = on_surface(sheet, at_a.s, a.s, wa, b.s, t, w);
-  const Vec3 axis = unit(slope ? b.ct + *slope * b.cw : a.tangent);
+  // Neighbours are nearly parallel; a direction that is not (a spline that still swings while I2 looks for
+  // its path) says nothing about the cusp.
+  constexpr double kParallel = 0.94;
+  const Vec3 old = unit(a.tangent), own = slope ? unit(b.ct + *slope * b.cw) : old;
+  const Vec3 axis = norm(old) > 0 && std::abs(dot(old, own)) < kParallel ? old : own;
   const double radius = sheet.radius();
   const geom::Interval ts = sheet.t_range();
   const bool at_edge = ends && (t <= ts.lo || t >= ts.hi);
