@@ -8,10 +8,10 @@
 namespace burin::cycle {
 namespace {
 
-// Use of the limits that is aimed at (height 0.993 S) and how far the spline between nodes may be off
-// (height 0.4 %): never above S, and within 2 % of it with room for what a check measures differently.
-constexpr double kAim = 0.9965;
-constexpr double kOff = 0.002;
+// Use of the limits that is aimed at (height 0.996 S) and how far the spline between nodes may be off
+// (height 0.3 %): never above S, and within 2 % of it with room for what a check measures differently.
+constexpr double kAim = 0.998;
+constexpr double kOff = 0.0015;
 // Solved this closely, so that the slopes of the spline do not feel what is left.
 constexpr double kSolved = 3e-6;
 // Nodes are at least this part of a step apart: what is finer is no feature of the scallop.

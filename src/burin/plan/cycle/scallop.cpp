@@ -156,15 +156,16 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   // its path) says nothing about the cusp.
   constexpr double kParallel = 0.94;
   const Vec3 old = unit(a.tangent), own = slope ? unit(b.ct + *slope * b.cw) : old;
-  const Vec3 axis = norm(old) > 0 && std::abs(dot(old, own)) < kParallel ? old : own;
+  Vec3 axis = norm(old) > 0 && std::abs(dot(old, own)) < kParallel ? old : own;
+  const Vec3 apart = a.c - b.c;
+  // Beyond its end the path before is the sphere about it: what stands between two spheres lies in the plane
+  // that holds both centres, whatever the direction of the new path.
+  if (const Vec3 around = cross(apart, down); a.at_end && norm(around) > 0)
+    axis = dot(around, axis) < 0 ? -unit(around) : unit(around);
   const double radius = sheet.radius();
   const geom::Interval ts = sheet.t_range();
   const bool at_edge = ends && (t <= ts.lo || t >= ts.hi);
   Point3 x;
-  const Vec3 apart = a.c - b.c;
-  // The end of the old path lies on the new one, or nearly: nothing stands between them.
-  constexpr double kAlong = 0.9;
-  if (a.at_end && std::abs(dot(apart, axis)) > kAlong * norm(apart)) return r;
   if (!cusp_point(b.c, axis, a.c, radius, down, x)) {
     // The two centres face each other at a slant: the plane between them instead of the one across the path.
     const Vec3 square = unit(axis - (dot(axis, apart) / dot(apart, apart)) * apart);
