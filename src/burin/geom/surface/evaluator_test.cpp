@@ -75,9 +75,9 @@ std::vector<NurbsSurface> all_kinds() {
   unsigned seed = 1;
   for (int p = 1; p <= 7; ++p) {
     for (int q = 1; q <= 7; ++q) {
+      const bool repeats = seed % 2 == 0;
       all.push_back(random_surface(
-          seed++,
-          {.count_u = p + 4, .count_v = q + 3, .degree_u = p, .degree_v = q, .repeats = seed % 2 == 0}));
+          seed++, {.count_u = p + 4, .count_v = q + 3, .degree_u = p, .degree_v = q, .repeats = repeats}));
     }
   }
   for (const double w : {30.0, 1000.0}) {

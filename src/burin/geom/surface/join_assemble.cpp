@@ -218,6 +218,8 @@ std::vector<Cluster> clusters_of(std::vector<PieceKnot> knots, double near, int 
       open = there == out.back().multiplicity.end() || there->second + knot.multiplicity <= degree;
     }
     if (!open) {
+      // The cluster before may have moved to this very value: back to where it began.
+      if (!out.empty() && out.back().value >= knot.value) out.back().value = begin;
       out.push_back({knot.value, knot.order, {}});
       begin = knot.value;
     }
@@ -367,6 +369,21 @@ Result<void> check_effort(const Pieces& pieces) {
   return Error{ErrorCode::range, "one surface of them would need too many knots", {}};
 }
 
+/// Intervals far out of proportion can make knots of one piece fall together: then it is no spline any more,
+/// and nothing may be computed with it.
+Result<void> check_pieces(const Pieces& pieces) {
+  for (const NurbsSurface& s : pieces.nets) {
+    for (const Direction d : {Direction::u, Direction::v}) {
+      const Interval domain = s.domain(d);
+      bool good = domain.length() > 0 && std::is_sorted(s.knots(d).begin(), s.knots(d).end());
+      for (const Knot& knot : inner_knots(s.knots(d), s.degree(d)))
+        good = good && knot.value > domain.lo && knot.value < domain.hi && knot.multiplicity <= s.degree(d);
+      if (!good) return Error{ErrorCode::geometry, "knots of a part of them fall together", {}};
+    }
+  }
+  return {};
+}
+
 /// Numbers far out of proportion can make knots fall together in one piece and not in the other.
 Result<void> check_knots(const Pieces& pieces) {
   for (int y = 0; y < pieces.height; ++y) {
@@ -417,6 +434,7 @@ Result<JoinedSurface> assemble(const std::vector<Source>& sources, const CellGra
   for (int y = 0; y < grid.height; ++y)
     for (int x = 0; x < grid.width; ++x)
       pieces.nets.push_back(piece_of(sources, grid.at(x, y), x_of(x), y_of(y)));
+  if (auto ok = check_pieces(pieces); !ok) return std::move(ok).error();
   raise_degrees(pieces);
   if (auto ok = check_effort(pieces); !ok) return std::move(ok).error();
   for (const bool in_x : {true, false}) {

@@ -201,6 +201,25 @@ TEST(JoinGaps, KnotsThatOnlyNearlyMatchBecomeOne) {
   EXPECT_LT(difference(parts, c, random), 1e-4);
 }
 
+/// A knot of the second patch just before another of its own that the first patch has too: moving the first
+/// of them onto the second would make a knot that is there more often than the degree.
+TEST(JoinGaps, KnotsThatMoveDoNotFallOnOthers) {
+  constexpr double kNear = 5e-7;
+  const auto with_knots = [](const NurbsSurface& s, const std::vector<double>& at) {
+    return insert_knots(*elevate_degree(with_domain(s, Direction::u, {0, 1}), Direction::u, 2), Direction::u,
+                        at);
+  };
+  const std::vector<NurbsSurface> patches{
+      with_knots(rectangle(0, 0, 10, 5), {0.5 + kNear}),
+      with_knots(rectangle(0, 5, 10, 9), {0.5, 0.5, 0.5, 0.5 + kNear}),
+  };
+  Random random(29);
+  const Composite c = joined(patches);
+  check(c);
+  ASSERT_EQ(c.surfaces.size(), 1u);
+  EXPECT_LT(difference(patches, c, random), 1e-4);
+}
+
 // ---- what is meant to break things ----
 
 TEST(JoinAdversarial, CornersOnly) {
