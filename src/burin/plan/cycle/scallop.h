@@ -16,6 +16,9 @@ struct Cusp {
   double height = 0;     ///< over the surface with its stock; negative: below it
   double side_step = 0;  ///< distance on the surface between the paths
   double s = 0;          ///< parameter of the nearest place of the path before
+  /// The ball is larger than what the surface's curvature lets in at one of the two places: it is lifted
+  /// there, and the height says nothing.
+  bool folded = false;
 };
 
 /// One path over the whole region: a graph for each stretch that lies inside it, and its exact tool path.
