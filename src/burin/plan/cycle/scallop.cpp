@@ -103,6 +103,14 @@ double edge_cusp(const Sheet& sheet, const Before& before, double t_edge, double
   return h;
 }
 
+// The centre's surface runs backwards: (1 + r k1)(1 + r k2) of the principal curvatures, or both, below 0.
+bool fold(const Contact& c) {
+  if (c.degenerate) return false;
+  const double turned = dot(cross(c.ct, c.cw), cross(c.st, c.sw));
+  const double trace = dot(c.ct, c.st) * dot(c.sw, c.sw) + dot(c.cw, c.sw) * dot(c.st, c.st);
+  return turned < 0 || trace < 0;
+}
+
 double on_surface(const Sheet& sheet, Point3 sa, double ta, double wa, Point3 sb, double tb, double wb) {
   const Point3 mid = sheet.point(0.5 * (ta + tb), 0.5 * (wa + wb));
   const double one = distance(sa, sb), two = distance(sa, mid) + distance(mid, sb);
@@ -151,7 +159,8 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   // Contacts and centres of a ball that fits move the same way; at (1 - R / rho) of the way, 0 where the ball
   // just fits.
   constexpr double kFits = 0.02;
-  r.too_tight = dot(b.c - a.c, b.s - at_a.s) < kFits * dot(b.s - at_a.s, b.s - at_a.s);
+  r.too_tight =
+      fold(at_a) || fold(b) || dot(b.c - a.c, b.s - at_a.s) < kFits * dot(b.s - at_a.s, b.s - at_a.s);
   // Neighbours are nearly parallel; a direction that is not (a spline that still swings while I2 looks for
   // its path) says nothing about the cusp.
   constexpr double kParallel = 0.94;
