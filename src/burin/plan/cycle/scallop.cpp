@@ -145,7 +145,8 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   NearestCentre::Place a = before.centres.find(b.c);
   double wa = before.path->w_at(a.s);
   const Contact at_a = sheet.contact(a.s, wa);
-  const Vec3 down = -(at_a.n + b.n);
+  // On a crease the ball of the path before may stand on either side of it, or between.
+  const Vec3 down = -(unit(a.c - at_a.s) + b.n);
   r.s = a.s;
   r.side_step = on_surface(sheet, at_a.s, a.s, wa, b.s, t, w);
   // Contacts and centres of a ball that fits move the same way; at (1 - R / rho) of the way, 0 where the ball
