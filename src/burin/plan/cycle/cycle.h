@@ -62,7 +62,8 @@ struct Motion {
   double lift_max = 0;  ///< how far it was lifted above the surface at most
 };
 
-/// What the planner found about two neighbouring paths.
+/// What the planner found about two neighbouring paths, where the ball fits the surface (no figures where it
+/// fits nowhere between two).
 struct PassFigures {
   int surface = 0, pass = 0;  ///< between pass - 1 and pass
   double scallop_min = 0, scallop_max = 0;

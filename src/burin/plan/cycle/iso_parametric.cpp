@@ -57,8 +57,10 @@ class Stepper {
   double at(const Before& before, double t, double w, Worst& r) const {
     const Cusp c = cusp(sheet_, before, t, w, 0.0, true);
     const double use = use_of_limits(task_, c);
-    r.figures.scallop_min = std::min(r.figures.scallop_min, c.height);
-    r.figures.scallop_max = std::max(r.figures.scallop_max, c.height);
+    if (!c.folded) {
+      r.figures.scallop_min = std::min(r.figures.scallop_min, c.height);
+      r.figures.scallop_max = std::max(r.figures.scallop_max, c.height);
+    }
     r.figures.side_step_max = std::max(r.figures.side_step_max, c.side_step);
     r.use = std::max(r.use, use);
     return use;

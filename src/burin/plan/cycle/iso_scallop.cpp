@@ -220,6 +220,7 @@ class Front {
   }
 
   void note() {
+    if (last_.folded) return;
     figures_.scallop_min = std::min(figures_.scallop_min, last_.height);
     figures_.scallop_max = std::max(figures_.scallop_max, last_.height);
     figures_.side_step_max = std::max(figures_.side_step_max, last_.side_step);
@@ -248,6 +249,7 @@ PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last)
       if (!a.covers(t)) continue;
       const UvPoint p = g.at(t);
       const Cusp c = cusp(sheet, before, t, p.w, p.w1, false);
+      if (c.folded) continue;
       f.scallop_min = std::min(f.scallop_min, c.height);
       f.scallop_max = std::max(f.scallop_max, c.height);
       f.side_step_max = std::max(f.side_step_max, c.side_step);

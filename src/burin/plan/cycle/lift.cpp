@@ -66,6 +66,7 @@ class Lifter {
       from = hi;
     }
     append(out, part(from, total_));
+    close_gaps(out);
     chain_ = std::move(out);
   }
 
@@ -152,13 +153,13 @@ class Lifter {
     return out;
   }
 
-  static void append(Chain& to, Chain&& more) {
-    if (!to.empty() && !more.empty()) {
-      // Cut at the same place by two polynomials: the same point to the last bits; make it one.
-      QuinticNode& b = more.front().track.tip.nodes.front();
-      b.p = to.back().track.tip.nodes.back().p;
-    }
-    std::move(more.begin(), more.end(), std::back_inserter(to));
+  static void append(Chain& to, Chain&& more) { std::move(more.begin(), more.end(), std::back_inserter(to)); }
+
+  // Pieces that were cut at the same place by two polynomials, or at the end of a piece found by a division,
+  // meet in the same point to the last bits, the more of them the farther the part is from its zero.
+  static void close_gaps(Chain& chain) {
+    for (std::size_t i = 1; i < chain.size(); ++i)
+      chain[i].track.tip.nodes.front().p = chain[i - 1].track.tip.nodes.back().p;
   }
 
   // Which way the tool goes, compared with its contact on the surface.

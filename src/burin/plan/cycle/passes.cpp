@@ -20,9 +20,11 @@ std::vector<double> samples_along(const Sheet& sheet, geom::Interval t, int coun
     cuts = {t.lo, t.hi};
     count = static_cast<int>(kMostSpans);
   }
+  // Where there are more spans than samples were asked for, the knots are samples enough.
+  const int least = cuts.size() > static_cast<std::size_t>(count) ? 1 : 3;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double share = (cuts[i + 1] - cuts[i]) / t.length();
-    const int n = std::max(3, static_cast<int>(std::ceil(share * count)));
+    const int n = std::max(least, static_cast<int>(std::ceil(share * count)));
     for (int k = 0; k < n; ++k) out.push_back(cuts[i] + (cuts[i + 1] - cuts[i]) * k / n);
   }
   out.push_back(t.hi);

@@ -39,7 +39,8 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task);
 /// Total of quintic nodes that one plan may hold (about 1 GB).
 inline constexpr std::size_t kMaxNodes = 6'000'000;
 
-/// Parameters t at which paths are compared: every knot span at least thrice, about `count` in all.
+/// Parameters t at which paths are compared: every knot span at least thrice (long knot
+/// vectors: every knot), about `count` in all.
 std::vector<double> samples_along(const Sheet& sheet, geom::Interval t, int count);
 /// The border w = const is a single point.
 bool collapsed(const Sheet& sheet, geom::Interval t, double w);

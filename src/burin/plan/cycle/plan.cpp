@@ -166,6 +166,8 @@ class SurfacePlanner {
     plan.paths += s.paths;
     for (std::size_t k = 0; k < s.pairs.size(); ++k) {
       const PairFigures& f = s.pairs[k];
+      // Nowhere between these two does the ball fit the surface, so that nothing is known.
+      if (f.scallop_min == kNoOverlap) continue;
       plan.figures.push_back({static_cast<int>(index), static_cast<int>(k) + 1, f.scallop_min, f.scallop_max,
                               f.side_step_max, f.last, f.side_step_binds});
     }

@@ -103,6 +103,14 @@ double edge_cusp(const Sheet& sheet, const Before& before, double t_edge, double
   return h;
 }
 
+// The centre's surface runs backwards: (1 + r k1)(1 + r k2) of the principal curvatures, or both, below 0.
+bool fold(const Contact& c) {
+  if (c.degenerate) return false;
+  const double turned = dot(cross(c.ct, c.cw), cross(c.st, c.sw));
+  const double trace = dot(c.ct, c.st) * dot(c.sw, c.sw) + dot(c.cw, c.sw) * dot(c.st, c.st);
+  return turned < 0 || trace < 0;
+}
+
 double on_surface(const Sheet& sheet, Point3 sa, double ta, double wa, Point3 sb, double tb, double wb) {
   const Point3 mid = sheet.point(0.5 * (ta + tb), 0.5 * (wa + wb));
   const double one = distance(sa, sb), two = distance(sa, mid) + distance(mid, sb);
@@ -145,8 +153,13 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   NearestCentre::Place a = before.centres.find(b.c);
   double wa = before.path->w_at(a.s);
   const Contact at_a = sheet.contact(a.s, wa);
+<<<<<<< HEAD
   // On a crease the ball of the path before may stand on either side of it, or between.
   const Vec3 down = -(unit(a.c - at_a.s) + b.n);
+=======
+  const Vec3 down = -(at_a.n + b.n);
+  r.folded = fold(at_a) || fold(b);
+>>>>>>> plan2
   r.s = a.s;
   r.side_step = on_surface(sheet, at_a.s, a.s, wa, b.s, t, w);
   // Contacts and centres of a ball that fits move the same way; at (1 - R / rho) of the way, 0 where the ball

@@ -16,9 +16,15 @@ struct Cusp {
   double height = 0;     ///< over the surface with its stock; negative: below it
   double side_step = 0;  ///< distance on the surface between the paths
   double s = 0;          ///< parameter of the nearest place of the path before
+<<<<<<< HEAD
   /// The surface is bent towards the tool more sharply than the ball: the centres do not follow the contacts,
   /// the ball will be lifted, and the height says nothing of what it leaves.
   bool too_tight = false;
+=======
+  /// The ball is larger than what the surface's curvature lets in at one of the two places: it is lifted
+  /// there, and the height says nothing.
+  bool folded = false;
+>>>>>>> plan2
 };
 
 /// One path over the whole region: a graph for each stretch that lies inside it, and its exact tool path.

@@ -286,6 +286,18 @@ std::size_t node_count(const Track& track) {
   return n;
 }
 
+namespace {
+
+// Distance of p from a box, squared.
+double away2(const geom::Box3& box, Point3 p) {
+  const double dx = std::max({box.lo.x - p.x, p.x - box.hi.x, 0.0});
+  const double dy = std::max({box.lo.y - p.y, p.y - box.hi.y, 0.0});
+  const double dz = std::max({box.lo.z - p.z, p.z - box.hi.z, 0.0});
+  return dx * dx + dy * dy + dz * dz;
+}
+
+}  // namespace
+
 NearestCentre::NearestCentre(const Track& track, double radius) : track_(&track), radius_(radius) {
   for (std::size_t i = 0; i < track.size(); ++i) {
     const QuinticPath& tip = track[i].tip;
@@ -297,18 +309,59 @@ NearestCentre::NearestCentre(const Track& track, double radius) : track_(&track)
     samples_.push_back({tip.nodes.back().p, i, tip.nodes.size() - 2});
   }
   for (Sample& s : samples_) s.c.z += radius_;
+  if (!samples_.empty()) build(0, static_cast<std::uint32_t>(samples_.size()));
+}
+
+// Samples that follow each other lie near each other: halves of the run make a tree of boxes.
+std::uint32_t NearestCentre::build(std::uint32_t first, std::uint32_t last) {
+  constexpr std::uint32_t kLeaf = 8;
+  const auto index = static_cast<std::uint32_t>(runs_.size());
+  runs_.push_back({{}, first, last, 0});
+  if (last - first <= kLeaf) {
+    for (std::uint32_t i = first; i < last; ++i) runs_[index].box.add(samples_[i].c);
+    return index;
+  }
+  const std::uint32_t mid = first + (last - first) / 2;
+  build(first, mid);
+  const std::uint32_t right = build(mid, last);
+  runs_[index].right = right;
+  runs_[index].box = runs_[index + 1].box;
+  runs_[index].box.add(runs_[right].box);
+  return index;
 }
 
 NearestCentre::Place NearestCentre::find(Point3 p) const {
+  if (samples_.empty()) return {};
   double best = std::numeric_limits<double>::infinity();
-  const Sample* nearest = nullptr;
-  for (const Sample& s : samples_) {
-    const Vec3 e = p - s.c;
-    const double d = dot(e, e);
-    if (d < best) best = d, nearest = &s;
+  std::uint32_t nearest = 0;
+  struct Waiting {
+    std::uint32_t run = 0;
+    double away = 0;
+  };
+  // One entry waits on every level of a tree of halves.
+  Waiting stack[64];
+  int size = 0;
+  stack[size++] = {0, 0.0};
+  while (size > 0) {
+    const Waiting next = stack[--size];
+    if (next.away > best) continue;
+    const Run& run = runs_[next.run];
+    if (run.right == 0) {
+      for (std::uint32_t i = run.first; i < run.last; ++i) {
+        const Vec3 e = p - samples_[i].c;
+        const double d = dot(e, e);
+        // Of two that are equally near the earlier one, in whatever order they are visited.
+        if (d < best || (d == best && i < nearest)) best = d, nearest = i;
+      }
+      continue;
+    }
+    const Waiting left{next.run + 1, away2(runs_[next.run + 1].box, p)};
+    const Waiting right{run.right, away2(runs_[run.right].box, p)};
+    const bool left_first = left.away <= right.away;
+    stack[size++] = left_first ? right : left;
+    stack[size++] = left_first ? left : right;
   }
-  if (nearest == nullptr) return {};
-  return polish(p, nearest->piece, nearest->node);
+  return polish(p, samples_[nearest].piece, samples_[nearest].node);
 }
 
 NearestCentre::Place NearestCentre::polish(Point3 p, std::size_t piece, std::size_t interval) const {

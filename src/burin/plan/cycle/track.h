@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "burin/base/result.h"
@@ -54,11 +55,18 @@ class NearestCentre {
     Point3 c;
     std::size_t piece = 0, node = 0;
   };
+  /// Samples that follow each other; the first half is the next run, the second half is `right` (0: a leaf).
+  struct Run {
+    geom::Box3 box;
+    std::uint32_t first = 0, last = 0, right = 0;
+  };
+  std::uint32_t build(std::uint32_t first, std::uint32_t last);
   Place polish(Point3 p, std::size_t piece, std::size_t interval) const;
 
   const Track* track_ = nullptr;
   double radius_ = 0;
   std::vector<Sample> samples_;
+  std::vector<Run> runs_;
 };
 
 }  // namespace burin::cycle
