@@ -115,6 +115,50 @@ TEST(CycleJob, ScallopIsWhatWasAskedFor) {
   }
 }
 
+/// Two patches over 15 x 10 mm each that meet in a crease along x at y = 0; the curve across the paths
+/// changes from there on, another way on either side. `slope`: fall of both sides away from the crease.
+std::vector<NurbsSurface> creased(double slope) {
+  std::vector<NurbsSurface> out;
+  for (const double side : {-1.0, 1.0}) {
+    NurbsSurface s;
+    s.degree_u = s.degree_v = 3;
+    s.count_u = s.count_v = 4;
+    s.knots_u = s.knots_v = {0, 0, 0, 0, 1, 1, 1, 1};
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) {
+        const double y = side < 0 ? -10 + 10.0 * j / 3 : 10.0 * j / 3, away = std::abs(y) / 10;
+        // Control values of (x - 7.5)^2.
+        const double square = i == 0 || i == 3 ? 56.25 : -18.75;
+        const double bend = 0.01 + (side < 0 ? 0.015 : -0.02) * away * away;
+        s.points.push_back(geom::homogeneous({5.0 * i, y, 5 - bend * square - slope * std::abs(y)}, 1));
+      }
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+TEST(CycleJob, ScallopOfPathsAcrossAConvexCrease) {
+  for (const double degrees : {20.0, 30.0, 40.0}) {
+    const std::vector<NurbsSurface> two = creased(std::tan(0.5 * degrees * geom::kPi / 180));
+    job::CycleOptions options;
+    options.along = cycle::Along::v;
+    const job::CycleJob job =
+        make(program({block(10, two[0]), block(20, two[1])}, nc::PathMethod::iso_scallop), options);
+    ASSERT_EQ(job.runs.size(), 1u);
+    ASSERT_EQ(job.surfaces_out, 1u);
+    EXPECT_EQ(job.lifted, 0u);
+    for (const cycle::PassFigures& f : job.runs[0].plan.figures) EXPECT_LE(f.scallop_max, 0.02 * 1.02);
+    const NurbsSurface& s = job.surfaces[0].composite.surfaces[0].surface;
+    const verify::ScallopReport report =
+        measure_scallop(s, tips_of(job.runs[0], 0),
+                        {.radius_mm = 3, .normal_reversed = reversed_normal(s), .spacing_mm = 0.5});
+    EXPECT_LE(report.scallop_max_mm, 0.02 * 1.02) << degrees;
+    // The crease itself included.
+    EXPECT_GE(report.scallop_min_mm, 0.02 * 0.95) << degrees;
+    EXPECT_LT(report.gouge_max_mm, 1e-3);
+  }
+}
+
 TEST(CycleJob, CutPatchesGiveTheSamePathAsTheWhole) {
   std::mt19937 random(4);
   const NurbsSurface whole = bumpy(random);

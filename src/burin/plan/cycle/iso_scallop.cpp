@@ -63,7 +63,13 @@ class Front {
  private:
   double use(double t, double w, std::optional<double> slope) {
     last_ = cusp(sheet_, before_, t, w, slope, false);
-    return use_of_limits(task_, last_);
+    double u = use_of_limits(task_, last_);
+    // On a crease the ball stands on both sides (and turns between them): the one that leaves more counts.
+    const std::vector<double>& creases = sheet_.t_creases();
+    if (!std::binary_search(creases.begin(), creases.end(), t)) return u;
+    const Cusp left = cusp(sheet_, before_, t, w, slope, false, geom::Side::left);
+    if (use_of_limits(task_, left) > u) u = use_of_limits(task_, left), last_ = left;
+    return u;
   }
 
   double start_w(double t) const { return previous_ == nullptr ? task_.w.lo : previous_->w_at(t); }

@@ -140,8 +140,8 @@ double height_at(const Sheet& sheet, double t, double w, Point3 centre) {
 }
 
 Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope,
-          bool ends) {
-  const Contact b = sheet.contact(t, w);
+          bool ends, geom::Side side) {
+  const Contact b = sheet.contact(t, w, side);
   Cusp r;
   if (before.pole) {
     r.s = t;
@@ -153,7 +153,8 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   NearestCentre::Place a = before.centres.find(b.c);
   double wa = before.path->w_at(a.s);
   const Contact at_a = sheet.contact(a.s, wa);
-  const Vec3 down = -(at_a.n + b.n);
+  // On a crease the ball of the path before may stand on either side of it, or between.
+  const Vec3 down = -(unit(a.c - at_a.s) + b.n);
   r.s = a.s;
   r.side_step = on_surface(sheet, at_a.s, a.s, wa, b.s, t, w);
   // Contacts and centres of a ball that fits move the same way; at (1 - R / rho) of the way, 0 where the ball
@@ -168,8 +169,10 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   Vec3 axis = norm(old) > 0 && std::abs(dot(old, own)) < kParallel ? old : own;
   const Vec3 apart = a.c - b.c;
   // Beyond its end the path before is the sphere about it: what stands between two spheres lies in the plane
-  // that holds both centres, whatever the direction of the new path.
-  if (const Vec3 around = cross(apart, down); a.at_end && norm(around) > 0)
+  // that holds both centres, whatever the direction of the new path. Over creases that the paths cross both
+  // paths have bends, whose directions say nothing of the path as a whole; there too.
+  const bool bends = !ends && !sheet.t_creases().empty();
+  if (const Vec3 around = cross(apart, down); (a.at_end || bends) && norm(around) > 0)
     axis = dot(around, axis) < 0 ? -unit(around) : unit(around);
   const double radius = sheet.radius();
   const geom::Interval ts = sheet.t_range();

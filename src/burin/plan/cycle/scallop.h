@@ -45,8 +45,9 @@ struct Before {
 /// yet the direction of the old path counts. The cusp is where the sphere about the new centre, cut by the
 /// plane across the new path, meets the tube about the old path. `ends`: at the ends of the paths also what
 /// stands on the edge of the surface beyond the end of the shorter one.
+/// `side`: of t, where t is on a crease.
 Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::optional<double> slope,
-          bool ends);
+          bool ends, geom::Side side = geom::Side::right);
 
 /// Height left at a surface point by a single ball.
 double height_at(const Sheet& sheet, double t, double w, Point3 centre);

@@ -94,6 +94,8 @@ Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, do
       evaluator_(surface) {
   for (const geom::Knot& k : w_knots_)
     if (k.multiplicity >= surface.degree(other(along))) w_creases_.push_back(k.value);
+  for (const geom::Knot& k : t_knots_)
+    if (k.multiplicity >= surface.degree(along)) t_creases_.push_back(k.value);
 }
 
 geom::SurfaceDerivatives Sheet::at(double t, double w, Side side_t, Side side_w) const {

@@ -46,6 +46,8 @@ class Sheet {
   const std::vector<geom::Knot>& w_knots() const { return w_knots_; }
   /// Knots of w where only the place is continuous (creases run along the paths).
   const std::vector<double>& w_creases() const { return w_creases_; }
+  /// The same in t: paths cross them.
+  const std::vector<double>& t_creases() const { return t_creases_; }
 
   Point3 point(double t, double w) const;
   Contact contact(double t, double w, geom::Side side_t = geom::Side::right,
@@ -73,7 +75,7 @@ class Sheet {
   geom::Interval t_, w_;
   double size_t_ = 1, size_w_ = 1;  ///< typical |St|, |Sw|
   std::vector<geom::Knot> t_knots_, w_knots_;
-  std::vector<double> w_creases_;
+  std::vector<double> w_creases_, t_creases_;
   mutable geom::SurfaceEvaluator evaluator_;
 };
 
