@@ -112,7 +112,18 @@ class SurfacePlanner {
     Result<SheetPlan> v = plan_sheet(i, sign, Direction::v);
     if (!u) return v;
     if (!v) return u;
+    // A direction that leaves too much somewhere is only taken when the other leaves more.
+    const double left_u = most_left(*u), left_v = most_left(*v), allowed = kAbove * options_.scallop;
+    if (std::max(left_u, left_v) > allowed) return left_v < left_u ? std::move(v) : std::move(u);
     return v->length < u->length ? std::move(v) : std::move(u);
+  }
+
+  // What a path may leave before it is said (I2 promises two per cent).
+  static constexpr double kAbove = 1.03;
+  static double most_left(const SheetPlan& plan) {
+    double most = 0;
+    for (const PairFigures& f : plan.pairs) most = std::max(most, f.scallop_max);
+    return most;
   }
 
   Result<SheetPlan> plan_sheet(std::size_t index, double sign, Direction along) {
@@ -164,6 +175,11 @@ class SurfacePlanner {
                             "surface " + std::to_string(index + 1) +
                                 " has nothing inside its trimming loops and is not machined");
     plan.paths += s.paths;
+    if (const double left = most_left(s); left > kAbove * options_.scallop)
+      diagnostics_.info("scallop_above",
+                        "surface " + std::to_string(index + 1) + ": up to " + format_fixed(left, 4) +
+                            " mm are left somewhere, above S = " + format_shortest(options_.scallop) +
+                            " (I1 keeps it; or a smaller S, or a smaller tool)");
     for (std::size_t k = 0; k < s.pairs.size(); ++k) {
       const PairFigures& f = s.pairs[k];
       // Nowhere between these two does the ball fit the surface, so that nothing is known.
