@@ -300,14 +300,14 @@ class Paths(unittest.TestCase):
         net = [[(2 * c, y, 2 * s, w) for c, s, w in ((-1, 0, 1), (-1, -1, math.sqrt(0.5)), (0, -1, 1), (1, -1, math.sqrt(0.5)), (1, 0, 1))] for y in (0, 20)]
         run = Run(program(cycle(10, 10, s=0.02), block(10, net, order=(3, 2), knots=[0, 0, 0, 1, 1, 2, 2, 2, 0, 0, 1, 1])), expect=(0, 3))
         self.assertGreater(run.json()["counts"]["lifted"], 0)
-        # The edges at x = -2 and 2, z = 0 hold the ball: its centre stands at sqrt(9 - 4) above them.
+        # The rims at x = -2 and 2, z = 0 hold the ball: its centre stands at sqrt(9 - (2 - |x|)^2) above them.
         s = run.points()
         cut = s[s[:, 6] >= 0]
-        middle = cut[np.abs(cut[:, 1]) < 0.02]
-        lowest = math.sqrt(5) - 3
+        rim = np.sqrt(9 - (2 - np.minimum(np.abs(cut[:, 1]), 2)) ** 2) - 3
+        self.assertGreater((cut[:, 3] - rim).min(), -0.0101)
+        middle = cut[np.abs(cut[:, 1]) < 0.05]
         self.assertGreater(len(middle), 0)
-        self.assertGreater(middle[:, 3].min(), lowest - 0.0101)
-        self.assertGreater(cut[:, 3].min(), lowest - 0.0101)
+        self.assertLess(middle[:, 3].min(), math.sqrt(5) - 3 + 0.01)
 
 
 class Program(unittest.TestCase):

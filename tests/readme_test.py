@@ -4,6 +4,7 @@
 path replaced) in an empty folder and compares what the README says of the result."""
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -41,4 +42,18 @@ for tolerance, minimal, bisect in [row.split("|")[1:4] for row in readme.splitli
         with open(os.path.join(work, "t.json")) as f:
             segments = json.load(f)["counts"]["fitted_segments"]
         assert segments == int(figure.strip(" *")), (tolerance, method, segments, figure)
+# What it says of the surface programs.
+subprocess.run([burin, "cycle", "examples/clock/clock.nc", "--json", "c.json", "-o", "c.ngc", "--quiet"], cwd=work, env=env, check=True)
+with open(os.path.join(work, "c.json")) as f:
+    report = json.load(f)
+said = re.search(r"`G106\.2 I2 E1`: (\d+) bytes that become one surface, (\d+) paths and\s+([\d,]+) setpoints; the same motion in G01 blocks "
+                 r"within 0\.01 mm takes ([\d,]+) bytes", readme)
+assert said, "the sentence about clock.nc"
+figures = [int(x.replace(",", "")) for x in said.groups()]
+size, counts = report["program_size"], report["counts"]
+assert counts["surfaces_out"] == 1
+assert figures == [size["surface_program_bytes"], counts["paths"], counts["setpoints"], size["g01_program_bytes"]], (figures, size, counts)
+said = re.search(r"with `G106\.1`: (\d+) bytes\s+instead of (\d+) for six copies", readme)
+sizes = [os.path.getsize(os.path.join(source, "examples", "keys", name)) for name in ("keys.nc", "keys_copied.nc")]
+assert said and [int(x) for x in said.groups()] == sizes, sizes
 print("README: commands, listing and figures agree")

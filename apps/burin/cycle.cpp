@@ -247,7 +247,37 @@ std::vector<view::CyclePicture::Figure> figures(const Session& session) {
     add("Program", "surface program", size["surface_program_bytes"].dump() + " bytes");
     add("Program", "as G01 within the tolerance", size["g01_program_bytes"].dump() + " bytes");
   }
+  if (r.extra.contains("comparison")) {
+    const Json& c = r.extra["comparison"];
+    add("Paths for this scallop", "iso-parametric (I1)", number(c["iso_parametric_mm"], 0) + " mm");
+    add("Paths for this scallop", "iso-scallop (I2)", number(c["iso_scallop_mm"], 0) + " mm");
+    add("Paths for this scallop", "parallel passes, at least",
+        c["parallel_mm"].is_null() ? "none: a wall stands along them" : number(c["parallel_mm"], 0) + " mm");
+  }
   return rows;
+}
+
+/// Of all machinings but repeats; only when a report is asked for: it plans everything a second time.
+Result<void> compare(const job::CycleJob& job, const job::CycleOptions& options, Session& session) {
+  if (session.common.html.empty()) return {};
+  job::PathLengths sum;
+  sum.parallel_mm = 0;
+  for (const job::CycleRun& run : job.runs) {
+    if (run.group.repeat) continue;
+    auto lengths = job::compare_methods(job, run, options);
+    if (!lengths) return lengths.error();
+    sum.iso_parametric_mm += lengths->iso_parametric_mm;
+    sum.iso_scallop_mm += lengths->iso_scallop_mm;
+    if (sum.parallel_mm && lengths->parallel_mm)
+      *sum.parallel_mm += *lengths->parallel_mm;
+    else
+      sum.parallel_mm.reset();
+  }
+  session.report.extra["comparison"] = {
+      {"iso_parametric_mm", sum.iso_parametric_mm},
+      {"iso_scallop_mm", sum.iso_scallop_mm},
+      {"parallel_mm", sum.parallel_mm ? Json(*sum.parallel_mm) : Json(nullptr)}};
+  return {};
 }
 
 std::string html(const CycleArgs& args, const job::CycleJob& job, const Servo& servo, const std::string& text,
@@ -344,6 +374,7 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   auto size = program_size(*job, text->size(), *dialect, options.tolerance_mm);
   if (!size) return in_file(size.error());
   session.report.extra["program_size"] = *size;
+  if (auto ok = compare(*job, options, session); !ok) return in_file(ok.error());
   fill_report(args, *job, *servo, *nc, session);
   session.report.parameters["tolerance_mm"] = options.tolerance_mm;
   return put_outputs(args, *job, *servo, *nc, nc_path, *text, session);

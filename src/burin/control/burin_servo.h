@@ -11,6 +11,7 @@
 extern "C" {
 #endif
 
+/* NOLINTBEGIN(modernize-use-using): C */
 typedef struct burin_servo burin_servo;
 
 typedef struct burin_servo_limits {
@@ -21,6 +22,7 @@ typedef struct burin_servo_setpoint {
   double t_s, x_mm, y_mm, z_mm, feed_mm_min, u, v;
   int32_t surface, path;
 } burin_servo_setpoint;
+/* NOLINTEND(modernize-use-using) */
 
 enum { BURIN_SERVO_RUNNING = 0, BURIN_SERVO_DONE = 1, BURIN_SERVO_ERROR = -1 };
 

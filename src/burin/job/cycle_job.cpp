@@ -7,6 +7,7 @@
 #include "burin/base/text.h"
 #include "burin/cl/fit_moves.h"
 #include "burin/job/curve_path.h"
+#include "burin/job/parallel_passes.h"
 
 namespace burin::job {
 namespace {
@@ -17,6 +18,8 @@ using geom::Vec3;
 
 // Nodes closer than this are one place: a move between them would be no motion.
 constexpr double kNoMove_mm = 1e-9;
+// The smooth path stays this near the exact one: far below what a servo resolves.
+constexpr double kPath_mm = 1e-6;
 
 QuinticPath translated(QuinticPath path, Vec3 by) {
   for (geom::QuinticNode& node : path.nodes) node.p = node.p + by;
@@ -51,6 +54,29 @@ std::vector<cycle::Motion> approach(Point3 from, Point3 to, double safety_z) {
     at = next;
   }
   return motions;
+}
+
+std::vector<cycle::Trim> trims_of(const nc::SurfaceProgram& program, const nc::MachineGroup& group) {
+  std::vector<cycle::Trim> trims;
+  for (std::size_t patch = 0; patch < group.blocks.size(); ++patch)
+    for (const nc::TrimLoop& loop : program.blocks[group.blocks[patch]].trims)
+      trims.push_back({patch, loop.points});
+  return trims;
+}
+
+cycle::PlanOptions plan_options(const nc::MachineGroup& group, const CycleOptions& options) {
+  cycle::PlanOptions plan;
+  plan.method = group.method == nc::PathMethod::iso_scallop ? cycle::Method::iso_scallop
+                                                            : cycle::Method::iso_parametric;
+  plan.along = options.along;
+  plan.tool_diameter = group.tool_diameter;
+  plan.stock = group.stock;
+  plan.scallop = group.scallop;
+  plan.side_step = group.side_step;
+  plan.safety_z = group.safety_z - group.displacement.z;
+  plan.tolerance_mm = options.tolerance_mm;
+  plan.path_mm = kPath_mm;
+  return plan;
 }
 
 class Builder {
@@ -186,21 +212,6 @@ class Builder {
     return job_.surfaces.size() - 1;
   }
 
-  cycle::PlanOptions plan_options(const nc::MachineGroup& group) const {
-    cycle::PlanOptions plan;
-    plan.method = group.method == nc::PathMethod::iso_scallop ? cycle::Method::iso_scallop
-                                                              : cycle::Method::iso_parametric;
-    plan.along = options_.along;
-    plan.tool_diameter = group.tool_diameter;
-    plan.stock = group.stock;
-    plan.scallop = group.scallop;
-    plan.side_step = group.side_step;
-    plan.safety_z = group.safety_z - group.displacement.z;
-    plan.tolerance_mm = options_.tolerance_mm;
-    plan.path_mm = kPath_mm;
-    return plan;
-  }
-
   /// Planned where the surfaces are defined, then moved to where they are machined. A repeat at the same
   /// height takes the paths of the machining before it and only finds its own way there.
   Result<cycle::SurfacePlan> plan_of(const nc::MachineGroup& group, std::size_t surfaces) {
@@ -210,12 +221,8 @@ class Builder {
           before.group.safety_z == group.safety_z)
         return moved(before.plan, group.displacement - before.group.displacement, group.safety_z);
     }
-    std::vector<cycle::Trim> trims;
-    for (std::size_t patch = 0; patch < group.blocks.size(); ++patch)
-      for (const nc::TrimLoop& loop : job_.program.blocks[group.blocks[patch]].trims)
-        trims.push_back({patch, loop.points});
-    auto plan = cycle::plan(job_.surfaces[surfaces].composite, trims, at_ - group.displacement,
-                            plan_options(group), diagnostics_);
+    auto plan = cycle::plan(job_.surfaces[surfaces].composite, trims_of(job_.program, group),
+                            at_ - group.displacement, plan_options(group, options_), diagnostics_);
     if (!plan) return at_line(plan.error(), group.line);
     for (cycle::Motion& motion : plan->motions)
       motion.path = translated(std::move(motion.path), group.displacement);
@@ -265,9 +272,6 @@ class Builder {
     if (!run.plan.motions.empty()) at_ = run.plan.motions.back().path.end();
   }
 
-  // The smooth path stays this near the exact one: far below what a servo resolves.
-  static constexpr double kPath_mm = 1e-6;
-
   const CycleOptions& options_;
   Diagnostics& diagnostics_;
   ProgressSink* progress_;
@@ -296,6 +300,25 @@ cl::Program as_lines(const CycleJob& job, double tolerance_mm) {
                cl::Program::kNoSource);
   }
   return program;
+}
+
+Result<PathLengths> compare_methods(const CycleJob& job, const CycleRun& run, const CycleOptions& options) {
+  const geom::Composite& composite = job.surfaces[run.surfaces].composite;
+  cycle::PlanOptions plan = plan_options(run.group, options);
+  PathLengths lengths;
+  for (const cycle::Method method : {cycle::Method::iso_parametric, cycle::Method::iso_scallop}) {
+    plan.method = method;
+    Diagnostics unused;
+    double length = run.plan.cut_mm;
+    if ((method == cycle::Method::iso_scallop) != (run.group.method == nc::PathMethod::iso_scallop)) {
+      auto other = cycle::plan(composite, trims_of(job.program, run.group), run.group.start, plan, unused);
+      if (!other) return other.error();
+      length = other->cut_mm;
+    }
+    (method == cycle::Method::iso_parametric ? lengths.iso_parametric_mm : lengths.iso_scallop_mm) = length;
+  }
+  lengths.parallel_mm = parallel_length(composite, 0.5 * plan.tool_diameter, plan.scallop, plan.side_step);
+  return lengths;
 }
 
 }  // namespace burin::job

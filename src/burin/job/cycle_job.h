@@ -60,6 +60,15 @@ struct CycleJob {
 Result<CycleJob> make_cycle_job(std::string_view text, const CycleOptions& options, Diagnostics& diagnostics,
                                 ProgressSink* progress);
 
+/// Length of the paths on the surfaces (cuts only) by either method, and of parallel passes for the same
+/// scallop.
+struct PathLengths {
+  double iso_parametric_mm = 0, iso_scallop_mm = 0;
+  std::optional<double> parallel_mm;  ///< nothing where a wall stands along the passes either way
+};
+/// Plans the run again by the method that it does not use. Errors of the planner.
+Result<PathLengths> compare_methods(const CycleJob& job, const CycleRun& run, const CycleOptions& options);
+
 /// The same motion as straight lines only (G01), for the comparison of program sizes.
 cl::Program as_lines(const CycleJob& job, double tolerance_mm);
 

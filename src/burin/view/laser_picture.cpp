@@ -5,6 +5,7 @@
 
 #include "burin/base/embedded.h"
 #include "burin/base/text.h"
+#include "burin/view/encode.h"
 #include "burin/view/picture.h"
 
 namespace burin::embedded {
@@ -109,29 +110,6 @@ std::string moves_data(const std::vector<PlaneMove>& moves, const Wanted& wanted
     pen = true;
   }
   return d;
-}
-
-std::string xml_text(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') out += c;
-    }
-  }
-  return out;
 }
 
 std::string svg_path(const std::string& id, const std::string& d, const std::string& style) {
@@ -247,7 +225,7 @@ std::string laser_svg(const LaserPicture& picture) {
   std::string out =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
       num(w) + "mm\" height=\"" + num(h) + "mm\" viewBox=\"" + num(box.lo.x) + " " + num(-box.hi.y) + " " +
-      num(w) + " " + num(h) + "\">\n<title>" + xml_text(picture.title) +
+      num(w) + " " + num(h) + "\">\n<title>" + html_text(picture.title) +
       "</title>\n<g transform=\"scale(1,-1)\">\n";
   if (picture.kerf_mm > 0) {
     out += svg_path("kerf", moves_data(moves, [](const PlaneMove& m) { return m.beam; }),
@@ -302,7 +280,7 @@ std::string laser_html(const LaserPicture& picture) {
   json = replace(std::move(json), "<", "\\u003c");  // no way out of the script element
 
   std::string page(embedded::pages().front().text);
-  page = replace(std::move(page), "@TITLE@", xml_text(picture.title));
+  page = replace(std::move(page), "@TITLE@", html_text(picture.title));
   return replace(std::move(page), "@DATA@", json);
 }
 

@@ -31,7 +31,6 @@ namespace burin::io::step {
 using geom::Direction;
 using geom::HPoint;
 using geom::Interval;
-using geom::NurbsCurve;
 using geom::NurbsSurface;
 using geom::Point3;
 using geom::Vec3;

@@ -18,7 +18,6 @@ namespace burin::io::step {
 using geom::Box2;
 using geom::Direction;
 using geom::Interval;
-using geom::Point2;
 
 namespace {
 

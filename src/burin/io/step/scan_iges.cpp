@@ -233,13 +233,11 @@ class Scanner {
       case 320:
         return 3 + n(3);
       case 402:
-        return 1 + n(1);
       case 406:
         return 1 + n(1);
       case 502:
         return 1 + 3 * n(1);
       case 504:
-        return 1 + 5 * n(1);
       case 508:
         return 1 + 5 * n(1);
       case 510:

@@ -44,7 +44,8 @@ bool collapsed(const Sheet& sheet, geom::Interval t, double w) {
 double use_of_limits(const PassTask& task, const Cusp& c) {
   const double by_scallop = std::sqrt(std::max(0.0, c.height) / task.scallop);
   const double by_side = task.side_step ? c.side_step / *task.side_step : 0;
-  return std::max(by_scallop, by_side);
+  const double by_fit = c.too_tight ? c.side_step / task.tight_step : 0;
+  return std::max({by_scallop, by_side, by_fit});
 }
 
 double first_step(const Sheet& sheet, const PassTask& task, double t, double w) {

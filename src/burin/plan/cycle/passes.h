@@ -16,6 +16,7 @@ struct PassTask {
   geom::Interval t, w;
   double scallop = 0;
   std::optional<double> side_step;
+  double tight_step = 0;  ///< largest side step where the ball does not fit: that of a plane
   double path_mm = 1e-6;
   std::size_t max_paths = 0;
 };

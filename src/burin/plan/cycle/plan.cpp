@@ -145,6 +145,7 @@ class SurfacePlanner {
     task.w = u ? region.v_range() : region.u_range();
     task.scallop = options_.scallop;
     task.side_step = options_.side_step;
+    task.tight_step = std::sqrt(8 * radius_ * options_.scallop);
     task.path_mm = path_mm_;
     task.max_paths = options_.max_paths;
     // A loop is touched by the line through its outermost point in that point only: the first path lies

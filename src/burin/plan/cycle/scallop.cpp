@@ -157,6 +157,10 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   r.folded = fold(at_a) || fold(b);
   r.s = a.s;
   r.side_step = on_surface(sheet, at_a.s, a.s, wa, b.s, t, w);
+  // Contacts and centres of a ball that fits move the same way; at (1 - R / rho) of the way, 0 where the ball
+  // just fits.
+  constexpr double kFits = 0.02;
+  r.too_tight = dot(b.c - a.c, b.s - at_a.s) < kFits * dot(b.s - at_a.s, b.s - at_a.s);
   // Neighbours are nearly parallel; a direction that is not (a spline that still swings while I2 looks for
   // its path) says nothing about the cusp.
   constexpr double kParallel = 0.94;
