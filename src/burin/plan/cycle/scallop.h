@@ -19,9 +19,6 @@ struct Cusp {
   /// The surface is bent towards the tool more sharply than the ball: the centres do not follow the contacts,
   /// the ball will be lifted, and the height says nothing of what it leaves.
   bool too_tight = false;
-  /// The surface is bent towards the tool more sharply than the ball: the centres do not follow the contacts,
-  /// the ball will be lifted, and the height says nothing of what it leaves.
-  bool too_tight = false;
 };
 
 /// One path over the whole region: a graph for each stretch that lies inside it, and its exact tool path.
