@@ -98,7 +98,8 @@ class Front {
       if (bad >= 0 && !(next > ok && next < bad)) next = 0.5 * (ok + bad);
       if (bad < 0 && next <= ok) next = 2 * ok;
       step = next;
-      if (bad >= 0 && bad - ok < 1e-9 * bad) break;
+      // Where the ball stops to fit the use jumps: there is nothing to be met closely.
+      if (bad >= 0 && bad - ok < (last_.too_tight ? 1e-3 : 1e-9) * bad) break;
     }
     if (best_off > kOff && bad >= 0) best_step = std::max(ok, least_);
     best_step = std::max(best_step, least_);
@@ -203,6 +204,7 @@ class Front {
         const UvPoint p = g.at(t);
         const double u = use(t, std::min(p.w, task_.w.hi), p.w1);
         note();
+        if (last_.too_tight) continue;  // lifted: more nodes would follow what is not cut
         const Contact c = sheet_.contact(t, std::min(p.w, task_.w.hi));
         const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
         if (!(apart > kFinest * last_.side_step)) continue;

@@ -332,8 +332,10 @@ std::uint32_t NearestCentre::build(std::uint32_t first, std::uint32_t last) {
 
 NearestCentre::Place NearestCentre::find(Point3 p) const {
   if (samples_.empty()) return {};
-  double best = std::numeric_limits<double>::infinity();
-  std::uint32_t nearest = 0;
+  // The answer to the question before is nearly always next to this one: it only rules places out sooner.
+  std::uint32_t nearest = hint_;
+  const Vec3 guess = p - samples_[nearest].c;
+  double best = dot(guess, guess);
   struct Waiting {
     std::uint32_t run = 0;
     double away = 0;
@@ -361,6 +363,7 @@ NearestCentre::Place NearestCentre::find(Point3 p) const {
     stack[size++] = left_first ? right : left;
     stack[size++] = left_first ? left : right;
   }
+  hint_ = nearest;
   return polish(p, samples_[nearest].piece, samples_[nearest].node);
 }
 

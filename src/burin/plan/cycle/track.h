@@ -67,6 +67,7 @@ class NearestCentre {
   double radius_ = 0;
   std::vector<Sample> samples_;
   std::vector<Run> runs_;
+  mutable std::uint32_t hint_ = 0;  ///< of the last answer; one planner, one thread
 };
 
 }  // namespace burin::cycle
