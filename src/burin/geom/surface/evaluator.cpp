@@ -37,7 +37,7 @@ constexpr std::size_t kMaxKept = std::size_t{1} << 15;  // 256 kB
 constexpr std::size_t kMaxSlots = 32;
 
 /// Rounding of a piece in powers, in units of rounding of the sum in Bernstein form: above this, Bernstein.
-/// 400 * 2^-53 = 4.4e-14 of the size of the net is the bound of the loss; measured are a few per cent of it.
+/// 400 * 2^-53 = 4.4e-14 of the size of the net is the bound of the loss.
 constexpr double kMaxGrowth = 400;
 
 /// Basis functions of the fixed parameter, as IsoKernels::fix wants them, and where they act.
