@@ -395,6 +395,11 @@ class Program(unittest.TestCase):
             self.assertIn(where, run.stderr)
             self.assertEqual(os.listdir(run.folder), ["p.nc"])
 
+    def test_empty_and_odd_names(self):
+        self.assertIn("moves nothing", Run("%\nM30\n%\n", expect=(3,)).stderr)
+        run = Run("M30\n", "--setpoints", "s.txt", outputs=False, expect=(2,))
+        self.assertIn(".npy", run.stderr)
+
     def test_strict(self):
         """G91 of the repeats stays in force: the last retract becomes a step."""
         text = program("G106.1 W25.;\n", block(10, flat(0, 20, 0, 10)), "N50 G91 X30.;\n").replace("G90 G00 Z40.", "G00 Z40.")

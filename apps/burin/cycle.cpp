@@ -345,7 +345,15 @@ std::string nc_name(const CycleArgs& args, const Session& session) {
   return fs::path(args.program).replace_extension(".ngc").string();
 }
 
+/// .npy or CSV, by the name's ending.
+Result<void> check_setpoints_name(const std::string& path) {
+  const std::string ending = to_lower(fs::path(path).extension().string());
+  if (path.empty() || path == "-" || ending == ".csv" || ending == ".npy") return {};
+  return Error{ErrorCode::usage, "--setpoints: " + path + " is of no known kind (FILE.csv or FILE.npy)", {}};
+}
+
 Result<void> run_cycle(const CycleArgs& args, Session& session) {
+  if (auto ok = check_setpoints_name(args.setpoints); !ok) return ok;
   auto dialect = post::find_dialect(session.common.dialect);
   if (!dialect) return dialect.error();
   auto text = session.read_input(args.program);
@@ -366,6 +374,8 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
     return error;
   };
   if (!job) return in_file(job.error());
+  if (job->stretches.empty())
+    session.diagnostics.left_out("no_motion", "the program moves nothing", {.file = args.program});
   if (job->cl.name.empty()) job->cl.name = fs::path(args.program).stem().string();
   auto servo = interpolate(*job, args.limits, session);
   if (!servo) return in_file(servo.error());
