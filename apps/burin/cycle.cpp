@@ -378,7 +378,13 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
     session.diagnostics.left_out("no_motion", "the program moves nothing", {.file = args.program});
   if (job->cl.name.empty()) job->cl.name = fs::path(args.program).stem().string();
   auto servo = interpolate(*job, args.limits, session);
-  if (!servo) return in_file(servo.error());
+  if (!servo) {
+    // Without setpoints asked for, NC and surfaces are worth having all the same.
+    if (!args.setpoints.empty() || servo.error().code == ErrorCode::usage) return in_file(servo.error());
+    session.diagnostics.left_out("no_setpoints", "no setpoints were made: " + servo.error().message,
+                                 {.file = args.program});
+    servo = Servo{};
+  }
   auto nc = post::emit(job->cl, *dialect, {.write_z = true}, session.diagnostics);
   if (!nc) return in_file(nc.error());
   auto size = program_size(*job, text->size(), *dialect, options.tolerance_mm);

@@ -88,20 +88,23 @@ struct Step {
 };
 
 // The largest step that keeps the limits: the use of them grows almost linearly with the step.
-Step next_step(const Stepper& stepper, const Before& before, const PassTask& task, double w, double guess) {
+// Below `floor` it is not looked for: a place that no step satisfies must not cost a million paths.
+Step next_step(const Stepper& stepper, const Before& before, const PassTask& task, double w, double guess,
+               double floor) {
   constexpr int kIterations = 24;
   double ok = 0, bad = -1;  // steps known to keep the limits, known to break them
   Worst at_ok;
   double step = guess;
   for (int i = 0; i < kIterations; ++i) {
     step = std::min(step, task.w.hi - w);
+    step = std::max(step, std::min(floor, task.w.hi - w));
     const bool border = step >= task.w.hi - w;
     const Worst found = stepper.worst(before, border ? task.w.hi : w + step);
-    if (found.use <= kMost) {
+    if (found.use <= kMost || step <= floor) {
       ok = step;
       at_ok = found;
       // Later tries are content with less.
-      if (border || found.use >= (i < 6 ? kEnough : 0.9)) break;
+      if (border || step <= floor || found.use >= (i < 6 ? kEnough : 0.9)) break;
     } else {
       bad = step;
     }
@@ -142,7 +145,9 @@ Result<Passes> iso_parametric(const Sheet& sheet, const PassTask& task) {
   const double least = 1e-3 * task.w.length() / static_cast<double>(task.max_paths);
   while (w < task.w.hi) {
     const Before before = r.passes.empty() ? Before(task.t.lo, w) : Before(r.passes.back(), sheet.radius());
-    Step s = next_step(stepper, before, task, w, guess);
+    // A sharp bend needs closer paths than a plane; sixteen times as many is the most that is tried.
+    const double floor = smallest_first_step(sheet, task, stepper.samples(), w) / 16;
+    Step s = next_step(stepper, before, task, w, guess, floor);
     if (!(s.w - w > least)) s.w = std::min(w + std::max(least, 1e-3 * guess), task.w.hi);
     const bool last = s.w >= task.w.hi;
     if (last && pole_hi) {
