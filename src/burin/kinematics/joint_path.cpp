@@ -191,30 +191,12 @@ class Maker {
   }
 
   double minutes(const Joints& start, const Joints& end, double length) {
-    double least = 0;
-    for (const model::Axis& axis : machine_.machine().axes) {
-      const double by = travel(axis, start, end);
-      if (axis.speed > 0) least = std::max(least, by / axis.speed);
-    }
     for (std::size_t i = 0; i < 2; ++i)
       out_.turn_max = std::max(out_.turn_max, std::abs(end.rotary[i] - start.rotary[i]));
+    const double least = least_minutes(machine_, start, end);
     const double wanted = feed_ > 0 ? length / feed_ : 0;
     if (least > wanted * (1 + 1e-9)) ++out_.feed_limited;
     return std::max(least, wanted);
-  }
-
-  /// mm or degrees.
-  double travel(const model::Axis& axis, const Joints& a, const Joints& b) const {
-    if (axis.kind == model::AxisKind::linear) {
-      const std::size_t i = static_cast<std::size_t>(axis.letter - 'X');
-      return std::abs(b.linear[i] - a.linear[i]);
-    }
-    for (int i = 0; i < machine_.rotary_count(); ++i) {
-      const std::size_t k = static_cast<std::size_t>(i);
-      if (machine_.rotary_axis(i).letter == axis.letter)
-        return geom::degrees(std::abs(b.rotary[k] - a.rotary[k]));
-    }
-    return 0;
   }
 
   const Kinematics& machine_;
@@ -228,7 +210,28 @@ class Maker {
   std::size_t record_ = 0, move_ = 0;
 };
 
+/// mm or degrees.
+double travel(const Kinematics& machine, const model::Axis& axis, const Joints& a, const Joints& b) {
+  if (axis.kind == model::AxisKind::linear) {
+    const std::size_t i = static_cast<std::size_t>(axis.letter - 'X');
+    return std::abs(b.linear[i] - a.linear[i]);
+  }
+  for (int i = 0; i < machine.rotary_count(); ++i) {
+    const std::size_t k = static_cast<std::size_t>(i);
+    if (machine.rotary_axis(i).letter == axis.letter)
+      return geom::degrees(std::abs(b.rotary[k] - a.rotary[k]));
+  }
+  return 0;
+}
+
 }  // namespace
+
+double least_minutes(const Kinematics& machine, const Joints& from, const Joints& to) {
+  double least = 0;
+  for (const model::Axis& axis : machine.machine().axes)
+    if (axis.speed > 0) least = std::max(least, travel(machine, axis, from, to) / axis.speed);
+  return least;
+}
 
 Result<JointPath> make_joint_path(const Kinematics& machine, const cl::Program& program,
                                   const JointPathOptions& options) {

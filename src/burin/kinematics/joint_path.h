@@ -54,6 +54,8 @@ Joints between(const Joints& a, const Joints& b, double t);
 struct TipMotion {
   double length = 0, slowest = 0, fastest = 0;
 };
+/// Time that the slowest axis needs at its highest speed; axes without a speed do not count.
+double least_minutes(const Kinematics& machine, const Joints& from, const Joints& to);
 TipMotion tip_motion(const Kinematics& machine, const Joints& from, const Joints& to);
 
 }  // namespace burin::kinematics
