@@ -305,18 +305,14 @@ cl::Program as_lines(const CycleJob& job, double tolerance_mm) {
 Result<PathLengths> compare_methods(const CycleJob& job, const CycleRun& run, const CycleOptions& options) {
   const geom::Composite& composite = job.surfaces[run.surfaces].composite;
   cycle::PlanOptions plan = plan_options(run.group, options);
+  const bool by_scallop = plan.method == cycle::Method::iso_scallop;
+  plan.method = by_scallop ? cycle::Method::iso_parametric : cycle::Method::iso_scallop;
+  Diagnostics unused;
+  const auto other = cycle::plan(composite, trims_of(job.program, run.group), run.group.start, plan, unused);
+  if (!other) return other.error();
   PathLengths lengths;
-  for (const cycle::Method method : {cycle::Method::iso_parametric, cycle::Method::iso_scallop}) {
-    plan.method = method;
-    Diagnostics unused;
-    double length = run.plan.cut_mm;
-    if ((method == cycle::Method::iso_scallop) != (run.group.method == nc::PathMethod::iso_scallop)) {
-      auto other = cycle::plan(composite, trims_of(job.program, run.group), run.group.start, plan, unused);
-      if (!other) return other.error();
-      length = other->cut_mm;
-    }
-    (method == cycle::Method::iso_parametric ? lengths.iso_parametric_mm : lengths.iso_scallop_mm) = length;
-  }
+  lengths.iso_parametric_mm = by_scallop ? other->cut_mm : run.plan.cut_mm;
+  lengths.iso_scallop_mm = by_scallop ? run.plan.cut_mm : other->cut_mm;
   lengths.parallel_mm = parallel_length(composite, 0.5 * plan.tool_diameter, plan.scallop, plan.side_step);
   return lengths;
 }
