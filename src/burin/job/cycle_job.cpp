@@ -39,23 +39,6 @@ std::string title_of(const nc::MachineGroup& group, const nc::SurfaceProgram& pr
   return "G06.23 " + method + ", " + blocks + (group.repeat ? ", repeated" : "");
 }
 
-/// The way from where the tool stands to over the first cut: up first, never down before it is over the
-/// place.
-std::vector<cycle::Motion> approach(Point3 from, Point3 to, double safety_z) {
-  const double top = std::max(from.z, safety_z);
-  std::vector<cycle::Motion> motions;
-  Point3 at = from;
-  for (const Point3 next : {Point3{from.x, from.y, top}, Point3{to.x, to.y, top}, to}) {
-    if (distance(at, next) <= kNoMove_mm) continue;
-    cycle::Motion motion;
-    motion.kind = cycle::MotionKind::rapid;
-    motion.path = geom::straight(at, next);
-    motions.push_back(std::move(motion));
-    at = next;
-  }
-  return motions;
-}
-
 std::vector<cycle::Trim> trims_of(const nc::SurfaceProgram& program, const nc::MachineGroup& group) {
   std::vector<cycle::Trim> trims;
   for (std::size_t patch = 0; patch < group.blocks.size(); ++patch)
@@ -235,7 +218,9 @@ class Builder {
       return m.kind != cycle::MotionKind::rapid;
     });
     if (first == plan.motions.end()) return plan;
-    std::vector<cycle::Motion> motions = approach(at_, first->path.start() + by, safety_z);
+    std::vector<cycle::Motion> motions = cycle::approach(at_, first->path.start() + by, safety_z);
+    for (const cycle::Motion& m : motions) plan.rapid_mm += geom::length(m.path);
+    for (auto it = plan.motions.cbegin(); it != first; ++it) plan.rapid_mm -= geom::length(it->path);
     for (auto it = first; it != plan.motions.end(); ++it) {
       motions.push_back(*it);
       motions.back().path = translated(it->path, by);
