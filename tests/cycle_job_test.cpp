@@ -265,6 +265,20 @@ TEST(CycleJob, SetpointsKeepTheLimits) {
   }
 }
 
+TEST(CycleJob, RepeatsTakeTheirOwnWayThere) {
+  const job::CycleJob job = make(
+      "%\nG21;\nG90 G00 X-50. Y0. Z30.;\nG106.1 W25.;\nN10 G06.23 U2 V2 P2 Q2 D6. L0. F1200. S0.05;\n"
+      "X0. Y0. Z0. W1.;\nX10. Y0. Z0. W1.;\nX0. Y5. Z0. W1.;\nX10. Y5. Z0. W1.;\n"
+      "G91 X20.;\nX20.;\nG80;\nM30;\n%\n");
+  ASSERT_EQ(job.runs.size(), 3u);
+  for (const job::CycleRun& run : job.runs) {
+    double rapid = 0;
+    for (const cycle::Motion& m : run.plan.motions)
+      if (m.kind == cycle::MotionKind::rapid) rapid += geom::length(m.path);
+    EXPECT_NEAR(run.plan.rapid_mm, rapid, 1e-9);
+  }
+}
+
 TEST(CycleJob, SameBytesEveryTime) {
   std::mt19937 random(2);
   const std::string mm = program({block(10, bumpy(random))}, nc::PathMethod::iso_parametric);

@@ -300,6 +300,25 @@ TEST(Pole, BallTopIsCutWithoutSingularities) {
     }
 }
 
+TEST(Approach, NeverBelowTheSafetyHeightButOverThePlace) {
+  const Point3 to{40, 5, 20};
+  for (const Point3 from : {Point3{0, 0, -3}, Point3{0, 0, 20}, Point3{0, 0, 50}, Point3{40, 5, 7}, to}) {
+    const std::vector<Motion> way = approach(from, to, 20);
+    Point3 at = from;
+    for (const Motion& m : way) {
+      EXPECT_EQ(m.kind, MotionKind::rapid);
+      EXPECT_EQ(m.path.start(), at);
+      EXPECT_NE(m.path.end(), at);
+      const bool across = m.path.end().x != at.x || m.path.end().y != at.y;
+      if (across) {
+        EXPECT_EQ(at.z, std::max(from.z, 20.0));
+      }
+      at = m.path.end();
+    }
+    EXPECT_EQ(at, to);
+  }
+}
+
 TEST(Plan, IsDeterministic) {
   const auto c = composite({hills(20, 20, 3, 7)});
   const PlanOptions o = options(Method::iso_scallop, 4, 0.02, Along::automatic);
