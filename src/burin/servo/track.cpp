@@ -7,6 +7,7 @@
 #include <string>
 
 #include "burin/base/text.h"
+#include "burin/geom/gauss.h"
 #include "burin/servo/cursor.h"
 
 namespace burin::servo {
@@ -307,14 +308,7 @@ ArcDerivatives arc_derivatives(const Piece& piece, double x) {
 }
 
 double arc_length(const Piece& piece, double x0, double x1) {
-  constexpr double node[3] = {0, 0.53846931010568309, 0.90617984593866399};
-  constexpr double weight[3] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
-  const double mid = 0.5 * (x0 + x1), half = 0.5 * (x1 - x0);
-  double sum = weight[0] * geom::norm(velocity(piece, mid));
-  for (int i = 1; i < 3; ++i)
-    sum += weight[i] * (geom::norm(velocity(piece, mid - half * node[i])) +
-                        geom::norm(velocity(piece, mid + half * node[i])));
-  return half * sum;
+  return geom::gauss5([&piece](double x) { return geom::norm(velocity(piece, x)); }, x0, x1);
 }
 
 Junction junction(const Piece& before, const Piece& after) {
