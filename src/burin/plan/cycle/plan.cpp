@@ -7,6 +7,7 @@
 
 #include "burin/base/text.h"
 #include "burin/plan/cycle/cycle.h"
+#include "burin/plan/cycle/extend.h"
 #include "burin/plan/cycle/order.h"
 
 namespace burin::cycle {
@@ -137,7 +138,12 @@ class SurfacePlanner {
     const Region& region = regions_[index];
     SheetPlan out;
     out.along = along == Direction::u ? Along::u : Along::v;
-    sheets_.emplace_back(composite_.surfaces[index].surface, along, sign, radius_, options_.stock);
+    const geom::NurbsSurface& surface = composite_.surfaces[index].surface;
+    const bool over_edges = options_.method == Method::iso_scallop && region.whole();
+    // What stands on an edge between two paths is at most half a step off; steps are longer in hollows.
+    const double over = std::sqrt(8 * radius_ * options_.scallop);
+    sheets_.emplace_back(over_edges ? continued(surface, along, over) : surface, along, sign, radius_,
+                         options_.stock, surface.domain(along));
     const Sheet& sheet = sheets_.back();
     const PassTask task = task_of(sheet, region);
     if (!(task.t.length() > 0 && task.w.length() > 0)) return out;
@@ -161,6 +167,8 @@ class SurfacePlanner {
     const bool u = sheet.along() == Direction::u;
     task.t = u ? region.u_range() : region.v_range();
     task.w = u ? region.v_range() : region.u_range();
+    task.inner_t = task.t;
+    if (region.whole()) task.t = sheet.t_range();
     task.scallop = options_.scallop;
     task.side_step = options_.side_step;
     task.tight_step = std::sqrt(8 * radius_ * options_.scallop);
