@@ -35,6 +35,7 @@ struct TsiOptions {
   Tsi method = Tsi::surface;
   double radius = 0;
   double tolerance_mm = 0.01;  ///< the ball may sink in by at most half of this here
+  double deflection_mm = 0;    ///< of the mesh from the part: included in that half
 };
 struct TsiResult {
   CenterPath path;              ///< dense, gouge-free for `surface`
