@@ -6,7 +6,8 @@
 
 namespace burin::rotary {
 
-CenterLine::CenterLine(const CenterPath& path, double radius) : path_(path), radius_(radius) {
+CenterLine::CenterLine(const CenterPath& path, double radius, double accuracy_mm)
+    : path_(path), radius_(radius), accuracy_(accuracy_mm) {
   double s = 0;
   for (std::size_t i = 0; i < path.places.size(); ++i) {
     if (i > 0) s += geom::distance(path.places[i - 1].center, path.places[i].center);
@@ -51,24 +52,17 @@ Place CenterLine::at(double s) const {
     out.contact.u = a.contact.u + t * (b.contact.u - a.contact.u);
   out.contact.w = a.contact.w + t * (b.contact.w - a.contact.w);
   out.center = lerp(a.center, b.center, t);
+  // Where the ball rolls it stands on its contact; else the two places are of different contacts.
+  const geom::Point3 rolling = out.contact.p + radius_ * out.contact.n;
+  if (geom::distance(rolling, out.center) <= accuracy_) out.center = rolling;
   out.excess_mm = std::max(a.excess_mm, b.excess_mm);
   return out;
 }
 
-std::vector<double> CenterLine::locate(const std::vector<Place>& points) const {
-  std::vector<double> out;
-  const std::size_t n = path_.places.size(), end = path_.closed ? 2 * n + 1 : n;
-  std::size_t i = 0;
-  for (const Place& p : points) {
-    std::size_t j = i;
-    while (j < end && !(place(j).center == p.center && place(j).contact.n == p.contact.n &&
-                        place(j).contact.p == p.contact.p))
-      ++j;
-    if (j >= end) continue;  // not of this path: it is left to the motion check
-    out.push_back(length_at(j));
-    i = j + 1;
-  }
-  return out;
+double CenterLine::length_of(double number) const {
+  const auto i = static_cast<std::size_t>(std::max(0.0, number));
+  const double f = number - static_cast<double>(i), a = length_at(i);
+  return f > 0 ? a + f * (length_at(i + 1) - a) : a;
 }
 
 }  // namespace burin::rotary

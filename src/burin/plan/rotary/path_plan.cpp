@@ -37,9 +37,10 @@ class PathPlanner {
     out_.ssi_mm = ssi.error_max_mm;
     out_.ssi_split = ssi.split;
     out_.halving_points = ssi.halving_points;
-    const CenterLine line(dense_, shared_.tool.radius);
+    const CenterLine line(dense_, shared_.tool.radius, 0.25 * shared_.options.tolerance_mm);
     line_ = &line;
-    std::vector<double> at = line.locate(ssi.points);
+    std::vector<double> at;
+    for (const double number : ssi.at) at.push_back(line.length_of(number));
     if (at.empty()) return std::move(out_);
     begin_well(at);
     for (const double s : at) nodes_.push_back(made(s));

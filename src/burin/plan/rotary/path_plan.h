@@ -30,13 +30,14 @@ struct Shared {
 /// Dense places by the length of the centre path; straight between them.
 class CenterLine {
  public:
-  CenterLine(const CenterPath& path, double radius);
+  /// `accuracy_mm`: how far a centre may stand from where its contact wants it, when between two places.
+  CenterLine(const CenterPath& path, double radius, double accuracy_mm);
   double length() const { return at_.empty() ? 0 : at_.back(); }
   bool closed() const { return path_.closed; }
   /// The place at s; a closed path goes on after length().
   Place at(double s) const;
-  /// The lengths at which the given places stand, ascending from the first one (closed: on over the end).
-  std::vector<double> locate(const std::vector<Place>& points) const;
+  /// Number of a dense place and the part of the way to the next one -> length.
+  double length_of(double number) const;
   /// Calls visit(place) for the dense places strictly between s = from and s = to.
   template <class Visit>
   void between(double from, double to, Visit&& visit) const {
@@ -53,7 +54,7 @@ class CenterLine {
   const Place& place(std::size_t i) const { return path_.places[i % path_.places.size()]; }
 
   const CenterPath& path_;
-  double radius_;
+  double radius_, accuracy_;
   std::vector<double> at_;  ///< of each place; closed: one more for the first place again
 };
 
