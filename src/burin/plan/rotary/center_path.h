@@ -53,6 +53,9 @@ TsiResult resolve_tsi(const ContactPath& path, const geom::MeshIndex& part, cons
 
 struct SsiResult {
   std::vector<Place> points;       ///< of the places, as few as the tolerance allows; ends are kept
+  /// Where on the path each point stands: number of the dense place before it, and the part of the way to the
+  /// next one. Ascending; on a closed path it goes on over the number of places.
+  std::vector<double> at;
   double error_max_mm = 0;         ///< largest error of a step
   std::size_t split = 0;           ///< steps halved by the paper's procedure 1 on this path
   std::size_t halving_points = 0;  ///< CL points it would take

@@ -299,6 +299,7 @@ SsiResult thin(const CenterPath& path, double radius, double tolerance_mm) {
   SsiResult result;
   if (path.places.size() < 2) {
     result.points = path.places;
+    result.at.assign(path.places.size(), 0);
     result.halving_points = path.places.size();
     return result;
   }
@@ -316,7 +317,10 @@ SsiResult thin(const CenterPath& path, double radius, double tolerance_mm) {
       spots.pop_back();
     }
   }
-  for (const Spot s : spots) result.points.push_back(way.place(s));
+  for (const Spot s : spots) {
+    result.points.push_back(way.place(s));
+    result.at.push_back(static_cast<double>(s.i) + s.f);
+  }
   for (std::size_t k = 0; k < spots.size(); ++k) {
     const bool last = k + 1 == spots.size();
     if (last && !path.closed) break;
