@@ -57,27 +57,53 @@ std::size_t CenterLine::closest(Point3 q, std::size_t hint) const {
   return best;
 }
 
+namespace {
+
+/// Where the ray from q along n enters the ball swept along the line through a with direction h (unit; zero:
+/// the ball at a).
+double enters(Point3 q, Vec3 n, Point3 a, Vec3 h, double radius) {
+  const Vec3 d = q - a;
+  const Vec3 n_across = n - dot(n, h) * h, d_across = d - dot(d, h) * h;
+  const double aa = dot(n_across, n_across), ab = dot(d_across, n_across),
+               c = dot(d_across, d_across) - radius * radius;
+  if (c <= 0) return 0;
+  const double root = ab * ab - aa * c;
+  if (root < 0 || ab >= 0) return kNever;
+  return c / (-ab + std::sqrt(root));
+}
+
+/// The way is as good as straight near the segment that is nearest to where the ray enters: a few rounds.
+constexpr int kRounds = 3;
+
+}  // namespace
+
 double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) const {
   double t = 0;
-  // The way is as good as straight near the segment that is nearest to where the ray enters: twice is enough.
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     const Point3 at = q + t * n;
     const std::size_t segment = closest(at, hint);
     if (round > 0 && segment == hint) break;
     hint = segment;
     const Point3 a = points_[segment], b = points_[(segment + 1) % points_.size()];
-    Vec3 h = unit(b - a), d = q - a;
-    if (!closed_ && beyond_end(at, segment)) {  // the ball that stands at the end
-      d = q - (segment == 0 ? a : b);
-      h = {};
+    if (!closed_ && beyond_end(at, segment)) {
+      t = enters(q, n, segment == 0 ? a : b, {}, radius);
+    } else {
+      t = enters(q, n, a, unit(b - a), radius);
     }
-    const Vec3 n_across = n - dot(n, h) * h, d_across = d - dot(d, h) * h;
-    const double aa = dot(n_across, n_across), ab = dot(d_across, n_across),
-                 c = dot(d_across, d_across) - radius * radius;
-    if (c <= 0) return 0;
-    const double root = ab * ab - aa * c;
-    if (root < 0 || ab >= 0) return kNever;
-    t = c / (-ab + std::sqrt(root));
+    if (!(t > 0 && t < kNever)) return t;
+  }
+  return t;
+}
+
+double entry(const SegmentRuns& way, Point3 q, Vec3 n, double radius, std::size_t& hint) {
+  double t = 0, d2 = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::size_t segment = way.nearest(q + t * n, hint, d2);
+    if (round > 0 && segment == hint) break;
+    hint = segment;
+    if (round == 0 && d2 <= radius * radius) return 0;
+    t = enters(q, n, way[segment].a, unit(way[segment].b - way[segment].a), radius);
+    if (!(t > 0 && t < kNever)) return t;
   }
   return t;
 }

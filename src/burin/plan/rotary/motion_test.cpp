@@ -77,8 +77,7 @@ TEST(Motion, ProofHolds) {
       options.tolerance_mm = options.ball_mm = 0.01;
       const MoveCheck check = check_move(from, to, reach, index, tool, options);
       double worst = -kInf;
-      for (int i = 0; i <= 40; ++i)
-        worst = std::max(worst, deepest(mesh, tool, between(from, to, i / 40.0)));
+      for (int i = 0; i <= 40; ++i) worst = std::max(worst, deepest(mesh, tool, between(from, to, i / 40.0)));
       if (check.clear) {
         ++clear;
         EXPECT_LE(worst, options.tolerance_mm + 1e-6) << part << " " << move;
