@@ -25,11 +25,14 @@ Point3 turned(Point3 p, double theta) {
 struct Way {
   Point3 from, to;  ///< machine frame
   double theta_from, theta_to;
-  double radius;   ///< largest distance from the X axis
-  double run_yz;   ///< length of the linear way in y', z'
+  double radius;  ///< largest distance from the X axis
+  double run_yz;  ///< length of the linear way in y', z'
 
   Way(const AxisPose& a, const AxisPose& b)
-      : from(turned(a.center, a.theta)), to(turned(b.center, b.theta)), theta_from(a.theta), theta_to(b.theta) {
+      : from(turned(a.center, a.theta)),
+        to(turned(b.center, b.theta)),
+        theta_from(a.theta),
+        theta_to(b.theta) {
     radius = std::max(std::hypot(from.y, from.z), std::hypot(to.y, to.z));
     run_yz = std::hypot(to.y - from.y, to.z - from.z);
   }
@@ -69,8 +72,8 @@ class BallCheck {
     return {t, c, hit ? hit->distance : within};
   }
 
-  /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from the
-  /// chord; the bend comes on top.
+  /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from
+  /// the chord; the bend comes on top.
   double depth_bound(const Stop& a, const Stop& b, double bend) const {
     const double h2 = dot(b.center - a.center, b.center - a.center);
     const double da2 = a.distance * a.distance, db2 = b.distance * b.distance;
@@ -110,16 +113,6 @@ class BallCheck {
   double radius_, allowed_, at_ = 0, depth_ = -1e300;
 };
 
-/// Whether the whole of [lo, hi] (any number of turns) is in the set.
-bool holds(const AngleSet& set, double lo, double hi) {
-  for (const AngleInterval& i : set) {
-    if (i.hi - i.lo >= 2 * geom::kPi) return true;
-    const double turns = std::ceil((lo - i.hi) / (2 * geom::kPi)) * 2 * geom::kPi;
-    if (i.lo + turns <= lo && hi <= i.hi + turns) return true;
-  }
-  return false;
-}
-
 class BodyCheck {
  public:
   BodyCheck(const Way& way, const ReachIndex& reach, double tolerance)
@@ -143,11 +136,10 @@ class BodyCheck {
     const Vec3 axis{0, std::sin(theta), std::cos(theta)};
     ReachOptions options;
     options.grow_mm = grow + std::abs(grow) * turn;
-    const AngleSet set = reach_.reachable(c - std::max(0.0, grow) * axis, options);
-    if (holds(set, theta - turn, theta + turn)) return true;
+    if (reach_.clear(c - std::max(0.0, grow) * axis, theta - turn, theta + turn, options)) return true;
     // A collision in the middle is not looked for in ever smaller steps from the start.
     options.grow_mm = -give_;
-    if (level < kEarly && grow > 0 && !contains(reach_.reachable(c, options), theta)) {
+    if (level < kEarly && grow > 0 && !reach_.clear(c, theta, theta, options)) {
       at_ = middle;
       return false;
     }
