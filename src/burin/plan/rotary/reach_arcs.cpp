@@ -24,10 +24,12 @@ void Arcs::add(double lo, double hi) {
 }
 
 void Arcs::add_straight(double lo, double hi) {
-  const auto first =
-      std::lower_bound(arcs_.begin(), arcs_.end(), lo, [](const Arc& a, double at) { return a.hi < at; });
+  if (lo <= -2 + kSlack) lo = -2;
+  if (hi >= 2 - kSlack) hi = 2;
+  const auto first = std::lower_bound(arcs_.begin(), arcs_.end(), lo,
+                                      [](const Arc& a, double at) { return a.hi + kSlack < at; });
   auto end = first;
-  while (end != arcs_.end() && end->lo <= hi) {
+  while (end != arcs_.end() && end->lo <= hi + kSlack) {
     lo = std::min(lo, end->lo);
     hi = std::max(hi, end->hi);
     ++end;
@@ -40,23 +42,11 @@ void Arcs::add_straight(double lo, double hi) {
   }
 }
 
-bool Arcs::covers(double lo, double hi, double slack) const {
-  if (lo <= hi) return covers_straight(lo, hi, slack);
-  return covers_straight(lo, 2, slack) && covers_straight(-2, hi, slack);
-}
-
-bool Arcs::covers_straight(double lo, double hi, double slack) const {
-  for (const Arc& a : arcs_) {
-    if (a.hi + slack >= hi) return a.lo - slack <= lo;
-  }
-  return false;
-}
-
-AngleSet Arcs::gaps(double least) const {
+AngleSet Arcs::gaps() const {
   if (arcs_.empty()) return {{-geom::kPi, geom::kPi}};
   AngleSet out;
-  const auto gap = [&out, least](double lo, double hi) {
-    if (hi - lo > least) out.push_back({lo, hi});
+  const auto gap = [&out](double lo, double hi) {
+    if (hi - lo > kSlack) out.push_back({lo, hi});
   };
   const bool seam = arcs_.front().lo > -2 && arcs_.back().hi < 2;  // free on both sides of it
   if (!seam) gap(-geom::kPi, angle_of_turn(arcs_.front().lo));

@@ -17,6 +17,13 @@ inline double turn_of(double c, double s) {
 }
 double angle_of_turn(double turn);
 
+/// What the angles may be off. Where a point stands as far away as the piece is wide (the place that the ball
+/// touches, and all of a flat face beside it), rounding of squares (1e-16) becomes 1e-8 in the angle, as the
+/// arc sine has no slope left. A gap narrower than this is none, and what sticks out of an arc by less is not
+/// looked at. In turns (an
+/// eighth of the circle is half a turn; 0.5 to 1 of them a radian).
+constexpr double kSlack = 1e-7;
+
 class Arcs {
  public:
   Arcs() { arcs_.reserve(16); }
@@ -24,19 +31,26 @@ class Arcs {
   /// From `lo` counter-clockwise to `hi`, both in [-2, 2]; across the seam when hi < lo.
   void add(double lo, double hi);
   void add_all() { arcs_.assign(1, {-2, 2}); }
-  /// Whether the arc sticks out of what is forbidden by no more than `slack` (turns) at either end.
-  bool covers(double lo, double hi, double slack) const;
+  /// Whether the arc sticks out of what is forbidden by no more than kSlack at either end.
+  bool covers(double lo, double hi) const {
+    return lo <= hi ? covers_straight(lo, hi) : covers_straight(lo, 2) && covers_straight(-2, hi);
+  }
   bool all() const { return arcs_.size() == 1 && arcs_[0].lo <= -2 && arcs_[0].hi >= 2; }
-  /// What is left; gaps narrower than `least` (radians) are none.
-  AngleSet gaps(double least) const;
+  /// What is left.
+  AngleSet gaps() const;
 
  private:
   struct Arc {
     double lo, hi;
   };
   void add_straight(double lo, double hi);
-  bool covers_straight(double lo, double hi, double slack) const;
-  std::vector<Arc> arcs_;  ///< ascending, disjoint, within [-2, 2]
+  bool covers_straight(double lo, double hi) const {
+    for (const Arc& a : arcs_) {
+      if (a.hi + kSlack >= hi) return a.lo - kSlack <= lo;
+    }
+    return false;
+  }
+  std::vector<Arc> arcs_;  ///< ascending, more than kSlack apart, within [-2, 2]
 };
 
 }  // namespace burin::rotary::detail
