@@ -10,8 +10,12 @@ namespace {
 using geom::Box2;
 using geom::Point2;
 
-double turn(Point2 a, Point2 b, Point2 c) {
-  return cross(b - a, c - b);
+/// Whether c lies clearly to the left of the way from a to b: points along a straight line, which differ from
+/// it by rounding, are no ears.
+bool turns_left(Point2 a, Point2 b, Point2 c) {
+  constexpr double kStraight = 1e-9;  // radians
+  const geom::Vec2 ab = b - a, bc = c - b;
+  return cross(ab, bc) > kStraight * std::sqrt(norm2(ab) * norm2(bc));
 }
 
 /// Reflex vertices by grid cell; they leave lazily when they become convex or are cut off.
@@ -62,7 +66,10 @@ class Grid {
 class Clipper {
  public:
   explicit Clipper(const std::vector<Point2>& polygon)
-      : p_(polygon), before_(polygon.size()), after_(polygon.size()), reflex_(reflex_of(polygon)),
+      : p_(polygon),
+        before_(polygon.size()),
+        after_(polygon.size()),
+        reflex_(reflex_of(polygon)),
         grid_(polygon, reflex_) {
     const std::size_t n = polygon.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -98,7 +105,7 @@ class Clipper {
   static std::vector<std::uint8_t> reflex_of(const std::vector<Point2>& p) {
     std::vector<std::uint8_t> reflex(p.size());
     for (std::size_t i = 0, n = p.size(); i < n; ++i) {
-      reflex[i] = turn(p[(i + n - 1) % n], p[i], p[(i + 1) % n]) <= 0;
+      reflex[i] = !turns_left(p[(i + n - 1) % n], p[i], p[(i + 1) % n]);
     }
     return reflex;
   }
@@ -122,7 +129,7 @@ class Clipper {
     after_[a] = b;
     before_[b] = a;
     for (const std::uint32_t k : {a, b}) {
-      if (!reflex_[k] || turn(p_[before_[k]], p_[k], p_[after_[k]]) <= 0) continue;
+      if (!reflex_[k] || !turns_left(p_[before_[k]], p_[k], p_[after_[k]])) continue;
       reflex_[k] = 0;
       grid_.remove(p_[k], k);
     }

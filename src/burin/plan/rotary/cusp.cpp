@@ -30,6 +30,11 @@ double CenterLine::distance2(Point3 q, std::size_t segment) const {
   return dot(d, d);
 }
 
+bool CenterLine::beyond_end(Point3 q, std::size_t segment) const {
+  const Point3 a = points_[segment], b = points_[segment + 1];
+  return (segment == 0 && dot(q - a, b - a) < 0) || (segment + 1 == segments() && dot(q - b, b - a) > 0);
+}
+
 std::size_t CenterLine::closest(Point3 q, std::size_t hint) const {
   const std::size_t n = segments();
   std::size_t best = std::min(hint, n - 1);
@@ -61,7 +66,11 @@ double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) con
     if (round > 0 && segment == hint) break;
     hint = segment;
     const Point3 a = points_[segment], b = points_[(segment + 1) % points_.size()];
-    const Vec3 h = unit(b - a), d = q - a;
+    Vec3 h = unit(b - a), d = q - a;
+    if (!closed_ && beyond_end(at, segment)) {  // the ball that stands at the end
+      d = q - (segment == 0 ? a : b);
+      h = {};
+    }
     const Vec3 n_across = n - dot(n, h) * h, d_across = d - dot(d, h) * h;
     const double aa = dot(n_across, n_across), ab = dot(d_across, n_across),
                  c = dot(d_across, d_across) - radius * radius;

@@ -16,14 +16,15 @@ class CenterLine {
  public:
   CenterLine(std::vector<geom::Point3> points, bool closed) : points_(std::move(points)), closed_(closed) {}
 
-  /// Where the ray from q along the unit vector n enters the swept ball; infinity when it passes by. `hint`: a
-  /// segment near which to look; becomes the one that was found. Only that neighbourhood counts, so the height
-  /// is never too small.
+  /// Where the ray from q along the unit vector n enters the swept ball; infinity when it passes by. `hint`:
+  /// a segment near which to look; becomes the one that was found. Only that neighbourhood counts, so the
+  /// height is never too small.
   double entry(geom::Point3 q, geom::Vec3 n, double radius, std::size_t& hint) const;
   std::size_t segments() const { return closed_ ? points_.size() : points_.size() - 1; }
 
  private:
   double distance2(geom::Point3 q, std::size_t segment) const;
+  bool beyond_end(geom::Point3 q, std::size_t segment) const;
   std::size_t closest(geom::Point3 q, std::size_t hint) const;
 
   std::vector<geom::Point3> points_;

@@ -76,14 +76,28 @@ double step_along(const geom::Segment& s, double b, double deflection) {
   return rest / (b + std::sqrt(b * b + k * rest));  // k h^2 + 2 b h = rest
 }
 
+/// The normal turns by at most this over a facet along the section (radians): positions alone would allow
+/// very long facets on twisted flats.
+constexpr double kFacetTurn = 0.25;
+
+double steepest(const SweptSection& swept) {
+  double rate = 0;
+  for (std::size_t i = 1; i < swept.stations.size(); ++i) {
+    const Station &a = swept.stations[i - 1], &b = swept.stations[i];
+    rate = std::max(rate, std::abs((b.turn - a.turn) / (b.x - a.x)));
+  }
+  return rate;
+}
+
 Grid grid_for(const SweptSection& swept, double b, double deflection) {
   Grid grid;
+  const double rate = steepest(swept);
   grid.turn_step = b;
   grid.rows = rows_for(swept.stations, b);
   for (const geom::Segment& s : swept.section.segments) {
     const double h = step_along(s, b, deflection);
-    // An arc takes two steps at least, so that a section of two arcs is not flat.
-    const double n = std::max(s.is_line() ? 1.0 : 2.0, std::ceil(length_of(s) / h));
+    const double bend = std::abs(sweep_of(s)) + rate * length_of(s);
+    const double n = std::max({1.0, std::ceil(bend / kFacetTurn), std::ceil(length_of(s) / h)});
     grid.columns += n;
     grid.steps.push_back(n < 1e9 ? std::size_t(n) : std::size_t(1e9));
   }
@@ -117,7 +131,8 @@ std::vector<Row> rows_of(const std::vector<Station>& stations, double turn_step,
     const std::size_t n = turn > 0 ? std::max<std::size_t>(1, std::size_t(std::ceil(turn / turn_step))) : 1;
     for (std::size_t k = 1; k <= n; ++k) {
       const double f = double(k) / double(n);
-      rows.push_back({k == n ? b.x : a.x + f * (b.x - a.x), k == n ? b.turn : a.turn + f * (b.turn - a.turn)});
+      rows.push_back(
+          {k == n ? b.x : a.x + f * (b.x - a.x), k == n ? b.turn : a.turn + f * (b.turn - a.turn)});
       rate_after.push_back((b.turn - a.turn) / (b.x - a.x));
     }
   }

@@ -36,7 +36,8 @@ namespace {
 
 std::optional<Error> check(const Part& part, const PatternOptions& o) {
   const auto usage = [](std::string message) { return Error{ErrorCode::usage, std::move(message), {}}; };
-  if (!(o.ball_radius > 0) || !std::isfinite(o.ball_radius)) return usage("the ball's radius must be above 0 mm");
+  if (!(o.ball_radius > 0) || !std::isfinite(o.ball_radius))
+    return usage("the ball's radius must be above 0 mm");
   if (o.side_step && !(*o.side_step > 0 && std::isfinite(*o.side_step))) {
     return usage("the side step must be above 0 mm");
   }
@@ -54,7 +55,8 @@ std::optional<Error> check(const Part& part, const PatternOptions& o) {
 }  // namespace
 }  // namespace detail
 
-Result<PatternResult> make_paths(const Part& part, const PatternOptions& options, Diagnostics& diagnostics) try {
+Result<PatternResult> make_paths(const Part& part, const PatternOptions& options,
+                                 Diagnostics& diagnostics) try {
   if (auto error = detail::check(part, options)) return *error;
   if (part.swept) return detail::swept_paths(*part.swept, options);
   return detail::meshed_paths(part, options, diagnostics);

@@ -7,8 +7,8 @@
 
 #include "burin/plan/rotary/cusp.h"
 #include "burin/plan/rotary/patterns.h"
-#include "burin/plan/rotary/swept_lines.h"
 #include "burin/plan/rotary/sweep.h"
+#include "burin/plan/rotary/swept_lines.h"
 
 namespace burin::rotary::detail {
 namespace {
@@ -30,8 +30,8 @@ class RingPlanner {
 
   /// Fewer rings than this are impossible: the cusp of a cylinder, with no turns counted.
   double fewest() const {
-    const double gap = options_.side_step ? *options_.side_step
-                                          : 2 * flat_step(options_.ball_radius, options_.scallop);
+    const double gap =
+        options_.side_step ? *options_.side_step : 2 * flat_step(options_.ball_radius, options_.scallop);
     return (sweep_.x_max() - sweep_.x_min()) / gap;
   }
   /// The places of the rings; empty when there are too many (`wanted` says how many).
@@ -98,7 +98,8 @@ double RingPlanner::next_place(double x) {
   }
   if (options_.side_step) return x + guess;
   const double longest = sweep_.x_max() - x;
-  return x + step_for([&](double s) { return cusp(x, x + s); }, options_.scallop, std::min(guess, longest), longest);
+  return x + step_for([&](double s) { return cusp(x, x + s); }, options_.scallop, std::min(guess, longest),
+                      longest);
 }
 
 std::vector<double> RingPlanner::places(double& wanted) {
@@ -120,8 +121,8 @@ std::vector<double> RingPlanner::places(double& wanted) {
     const double next = next_place(xs.back());
     const bool stuck = !(next > xs.back());
     if (stuck || xs.size() >= options_.max_paths) {
-      wanted = stuck ? std::numeric_limits<double>::infinity()
-                     : double(xs.size()) * length / (xs.back() - x0);
+      wanted =
+          stuck ? std::numeric_limits<double>::infinity() : double(xs.size()) * length / (xs.back() - x0);
       return {};
     }
     // A last gap of next to nothing is rounding.
@@ -150,7 +151,8 @@ ContactPath ring_path(const Sweep& sweep, const std::vector<RingNode>& nodes, do
   return path;
 }
 
-ContactPath spiral_path(const Sweep& sweep, const std::vector<RingNode>& nodes, const std::vector<double>& xs) {
+ContactPath spiral_path(const Sweep& sweep, const std::vector<RingNode>& nodes,
+                        const std::vector<double>& xs) {
   ContactPath path;
   const std::size_t turns = xs.size() - 1;
   path.points.reserve(nodes.size() * (turns + 2) + 1);
@@ -174,7 +176,8 @@ std::vector<double> evened(const std::vector<double>& xs) {
   const double length = xs.back() - xs.front();
   const std::size_t n = std::size_t(std::max(1.0, std::ceil(length / least * (1 - 1e-12))));
   std::vector<double> even;
-  for (std::size_t i = 0; i <= n; ++i) even.push_back(i == n ? xs.back() : xs.front() + length * (double(i) / double(n)));
+  for (std::size_t i = 0; i <= n; ++i)
+    even.push_back(i == n ? xs.back() : xs.front() + length * (double(i) / double(n)));
   return even;
 }
 
@@ -199,7 +202,8 @@ Result<PatternResult> swept_paths(const SweptSection& swept, const PatternOption
   // So far apart that nothing else bounds the spacing of points.
   const double longest = std::numeric_limits<double>::infinity();
   RingPlanner planner(sweep, options);
-  const std::size_t a_ring = count_ring_nodes(sweep, options.ball_radius, options.density_mm, longest, options.max_points);
+  const std::size_t a_ring =
+      count_ring_nodes(sweep, options.ball_radius, options.density_mm, longest, options.max_points);
   double wanted = 0;
   std::vector<double> xs = planner.places(wanted);
   if (xs.empty() || double(xs.size() + 2) * double(a_ring) > double(options.max_points)) {

@@ -100,7 +100,8 @@ Result<ArcSpline> checked_section(const ArcSpline& section, double margin_mm) {
     if (seg.a == seg.b && seg.is_line()) continue;
     s.segments.push_back(seg);
   }
-  if (s.segments.empty()) return geometry("the section is empty (a part needs one closed curve around the axis)");
+  if (s.segments.empty())
+    return geometry("the section is empty (a part needs one closed curve around the axis)");
   const Box2 box = bounds_of(s);
   const double size = std::max(box.width(), box.height());
   s.closed = section.closed;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Step-size interference (Suh & Lee 2.1): as few CL points as the tolerance allows.
-//   A step from A to B, contacts P_j between: error = max |dist(P_j, AB) - R|. Above the line that is the overcut
-//   of eq. 2 (the ends included: R (1 - sqrt(1 - (N.H)^2)) is R - dist of the end's contact from the line), below
-//   it the undercut of eq. 3, here from the segment and for every contact, not only the middle one.
+//   A step from A to B, contacts P_j between: error = max |dist(P_j, AB) - R|. Above the line that is the
+//   overcut of eq. 2 (the ends included: R (1 - sqrt(1 - (N.H)^2)) is R - dist of the end's contact from the
+//   line), below it the undercut of eq. 3, here from the segment and for every contact, not only the middle
+//   one.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -51,8 +52,8 @@ class Way {
       const Place &a = at(i), &b = at(i + 1);
       const Vec3 way = b.center - a.center;
       const double length = norm(way);
-      const Contact middle{lerp(a.contact.p, b.contact.p, 0.5),
-                           detail::turned(a.contact.n, b.contact.n, 0.5), 0, 0};
+      const Contact middle{lerp(a.contact.p, b.contact.p, 0.5), detail::turned(a.contact.n, b.contact.n, 0.5),
+                           0, 0};
       const double off = distance(middle.p + radius * middle.n, lerp(a.center, b.center, 0.5));
       // A contact half-way that belongs to the centre half-way: the ball rolls, and may stop anywhere.
       rolls_.push_back(off <= 0.25 * tolerance);
@@ -137,7 +138,8 @@ class Way {
   std::vector<std::uint8_t> rolls_, jumps_, forced_;
 };
 
-/// The farthest dense place, at most `end`, that a step from `a` reaches; then the spot between it and the next.
+/// The farthest dense place, at most `end`, that a step from `a` reaches; then the spot between it and the
+/// next.
 class Stepper {
  public:
   explicit Stepper(const Way& way) : way_(way) {}
@@ -225,7 +227,8 @@ std::vector<Spot> closed_greedy(const Way& way) {
       best = k;
     }
   }
-  std::vector<Spot> spots(orbit.begin() + std::ptrdiff_t(best), orbit.begin() + std::ptrdiff_t(best + fewest));
+  std::vector<Spot> spots(orbit.begin() + std::ptrdiff_t(best),
+                          orbit.begin() + std::ptrdiff_t(best + fewest));
   return spots;
 }
 
@@ -282,7 +285,8 @@ void hand_over_excess(const Way& way, const std::vector<Spot>& spots, std::vecto
     for (std::size_t i = spots[k].i + 1; i <= end; ++i) {
       const Place& dropped = way.at(i);
       if (dropped.excess_mm <= 0) continue;
-      const bool nearer = distance(dropped.center, points[k].center) <= distance(dropped.center, points[next].center);
+      const bool nearer =
+          distance(dropped.center, points[k].center) <= distance(dropped.center, points[next].center);
       double& kept = points[nearer ? k : next].excess_mm;
       kept = std::max(kept, dropped.excess_mm);
     }

@@ -15,7 +15,8 @@ bool SweptSection::uniform() const {
   if (stations.size() < 2) return true;
   // Rates that differ by rounding only (stations written with a few decimals) are one.
   constexpr double kSameRate = 1e-9;
-  const double rate = (stations.back().turn - stations.front().turn) / (stations.back().x - stations.front().x);
+  const double rate =
+      (stations.back().turn - stations.front().turn) / (stations.back().x - stations.front().x);
   for (std::size_t i = 1; i < stations.size(); ++i) {
     const double own = (stations[i].turn - stations[i - 1].turn) / (stations[i].x - stations[i - 1].x);
     if (std::abs(own - rate) > kSameRate * (1 + std::abs(rate))) return false;

@@ -59,9 +59,9 @@ struct RingNode {
 };
 Contact lift(const Sweep& sweep, const RingNode& node, double x, double turn, double rate);
 
-/// The nodes of a closed ring, the first not repeated: so dense that the centre path of a ring is left by less
-/// than `density` (for every twist of the sweep), and points at most `longest` mm apart. A concave corner
-/// gives two nodes, a convex one as many as the ball's turn takes.
+/// The nodes of a closed ring, the first not repeated: so dense that the centre path of a ring is left by
+/// less than `density` (for every twist of the sweep), and points at most `longest` mm apart. A concave
+/// corner gives two nodes, a convex one as many as the ball's turn takes.
 std::vector<RingNode> ring_nodes(const Sweep& sweep, double ball_radius, double density, double longest);
 /// How many nodes that would be, at most; stops counting above `limit`.
 std::size_t count_ring_nodes(const Sweep& sweep, double ball_radius, double density, double longest,

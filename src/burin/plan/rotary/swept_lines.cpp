@@ -42,10 +42,14 @@ class LinePlanner {
  private:
   double cusp(double a, double b, double rate) const;
   CenterLine line(const SectionPoint& at, double rate, double reach) const {
-    constexpr int kHalf = 24;
+    const double bend = rate * rate * (norm(at.c - geom::Point2{}) + options_.ball_radius);
+    // Chords of the helix leave it by less than this part of the scallop.
+    constexpr double kChord = 0.002;
+    const double h = std::sqrt(8 * kChord * options_.scallop / (bend + 1e-9));
+    const int half = int(std::clamp(std::ceil(reach / h), 8.0, 1000.0));
     std::vector<geom::Point3> points;
-    for (int j = -kHalf; j <= kHalf; ++j) {
-      const double x = reach * j / kHalf;
+    for (int j = -half; j <= half; ++j) {
+      const double x = reach * j / half;
       points.push_back(center_of(sweep_.lift(at, x, rate * x, rate), options_.ball_radius));
     }
     return {std::move(points), false};
@@ -58,8 +62,9 @@ class LinePlanner {
 
 double LinePlanner::cusp(double a, double b, double rate) const {
   const double gap = b - a;
-  // A helix lies slanted to the section: the nearest place on it is at most this far along X.
-  const double reach = 2 * gap + 1e-6;
+  // A helix at the angle t to X: the nearest place on it lies gap sin t cos t further along X, at most half;
+  // normals of the two lean along X by different amounts, by up to the turn over the gap.
+  const double reach = gap * (1 + 2 * options_.ball_radius * std::abs(rate)) + 1e-6;
   const CenterLine line_a = line(sweep_.at_length(a, true), rate, reach),
                    line_b = line(sweep_.at_length(b, false), rate, reach);
   constexpr int kProbes = 16;
@@ -78,10 +83,9 @@ bool LinePlanner::places(double s0, double s1, std::vector<SectionPoint>& out, d
   out.push_back(sweep_.at_length(s0, true));
   for (double s = s0; s < s1;) {
     const double rest = s1 - s;
-    const double step =
-        options_.side_step
-            ? std::min(*options_.side_step, rest)
-            : step_for([&](double d) { return cusp(s, s + d); }, options_.scallop, std::min(guess, rest), rest);
+    const double step = options_.side_step ? std::min(*options_.side_step, rest)
+                                           : step_for([&](double d) { return cusp(s, s + d); },
+                                                      options_.scallop, std::min(guess, rest), rest);
     if (!(step > 0) || out.size() > options_.max_paths) return false;
     guess = step;
     s = step >= rest * (1 - 1e-9) ? s1 : s + step;
@@ -132,8 +136,8 @@ ContactPath line_path(const Sweep& sweep, const SectionPoint& at, const PatternO
       // A bend at a station: round a convex one the ball turns, in a concave one it has two contacts.
       const Contact last = path.points.back();
       if (angle_between(last.n, c.n) == 0) continue;
-      const geom::Vec3 along = path.points.size() > 1 ? last.p - path.points[path.points.size() - 2].p
-                                                      : geom::Vec3{1, 0, 0};
+      const geom::Vec3 along =
+          path.points.size() > 1 ? last.p - path.points[path.points.size() - 2].p : geom::Vec3{1, 0, 0};
       if (dot(c.n - last.n, along) > 0) {
         append_fan(path.points, c, options.ball_radius, options.density_mm);
       } else {
@@ -148,7 +152,8 @@ double points_on(const Sweep& sweep, const SectionPoint& at, const PatternOption
   double n = 1;
   const std::vector<Station>& st = sweep.swept().stations;
   const double fan = std::ceil(geom::kPi / std::sqrt(8 * options.density_mm / options.ball_radius));
-  for (std::size_t i = 1; i < st.size(); ++i) n += double(steps_along(sweep, at, st[i - 1].x, st[i].x, options));
+  for (std::size_t i = 1; i < st.size(); ++i)
+    n += double(steps_along(sweep, at, st[i - 1].x, st[i].x, options));
   return n + fan * double(st.size() - 2);
 }
 
@@ -163,7 +168,6 @@ Result<PatternResult> swept_lines(const Sweep& sweep, const PatternOptions& opti
   for (std::size_t i = 0; i < sweep.pieces(); ++i) {
     if (sweep.at(i, 0).curvature >= 0) convex += sweep.piece_length(i);
   }
-  const double flat = flat_step(options.ball_radius, options.scallop);
   const double fewest = options.side_step ? sweep.length() / *options.side_step : convex / (2 * flat);
   if (fewest > double(options.max_paths)) return too_many(options, 2 * fewest, 2);
   bool at_start = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tool-size interference (Suh & Lee 2.2) against the whole part. Centres are so close together that what is
-// clear at two neighbours is clear between them within a known depth: a point outside of both balls lies at most
-// h^2 / (8 R) inside of the ball between.
+// clear at two neighbours is clear between them within a known depth: a point outside of both balls lies at
+// most h^2 / (8 R) inside of the ball between.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -84,8 +84,11 @@ constexpr int kRefinements = 12;
 class Resolver {
  public:
   Resolver(const ContactPath& path, const geom::MeshIndex& part, const TsiOptions& options)
-      : options_(options), radius_(options.radius), spacing_(std::sqrt(0.4 * options.radius * options.tolerance_mm)),
-        allowed_(allowed_depth(options)), roller_(part, options.radius, 0.02 * options.tolerance_mm) {
+      : options_(options),
+        radius_(options.radius),
+        spacing_(std::sqrt(0.4 * options.radius * options.tolerance_mm)),
+        allowed_(allowed_depth(options)),
+        roller_(part, options.radius, 0.02 * options.tolerance_mm) {
     contacts_ = detail::densified(path, radius_, spacing_, original_);
     result_.path.closed = path.closed;
   }
@@ -142,7 +145,8 @@ void Resolver::roll(const Place& from, const Place& to, int depth, std::vector<P
   middle.contact = detail::mixed(from.contact, to.contact, 0.5);
   if (!roller_.touch(lerp(from.center, to.center, 0.5), middle)) return;
   // Pushed to where one end already is: no way on from here.
-  if (distance(middle.center, from.center) < 1e-3 * spacing_ || distance(middle.center, to.center) < 1e-3 * spacing_) {
+  if (distance(middle.center, from.center) < 1e-3 * spacing_ ||
+      distance(middle.center, to.center) < 1e-3 * spacing_) {
     return;
   }
   roll(from, middle, depth + 1, out);
@@ -152,8 +156,8 @@ void Resolver::roll(const Place& from, const Place& to, int depth, std::vector<P
 
 void Resolver::append(std::vector<Place>& places, std::vector<Contact> left, const Place* before,
                       const Place* after) {
-  result_.excess_max_mm = std::max(result_.excess_max_mm,
-                                   detail::spread_excess(places, left, before, after, radius_));
+  result_.excess_max_mm =
+      std::max(result_.excess_max_mm, detail::spread_excess(places, left, before, after, radius_));
   for (const Place& p : places) result_.path.places.push_back(p);
   result_.moved += places.size();
 }
@@ -183,7 +187,8 @@ void Resolver::bridge(std::size_t first, std::size_t end) {
     if (k < parts) {
       const double a = angle(from.center) + f * turn, r = r0 + f * (r1 - r0);
       next.contact = left[std::min(left.size() - 1, std::size_t(f * double(left.size())))];
-      if (!roller_.touch({from.center.x + f * (to.center.x - from.center.x), r * std::cos(a), r * std::sin(a)}, next)) {
+      if (!roller_.touch(
+              {from.center.x + f * (to.center.x - from.center.x), r * std::cos(a), r * std::sin(a)}, next)) {
         continue;
       }
     }

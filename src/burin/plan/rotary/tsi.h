@@ -14,8 +14,8 @@ TsiResult resolve_by_path(const ContactPath& path, const TsiOptions& options);
 Place place_at(const Contact& contact, double radius);
 /// The contact a part of the way from a to b: the point straight, the normal evenly turned, u round the seam.
 Contact mixed(const Contact& a, const Contact& b, double f);
-/// The path with contacts between, so that centres are at most `spacing` apart (the last to the first too when
-/// closed). `original` says for each how many given contacts it is: 1 or 0.
+/// The path with contacts between, so that centres are at most `spacing` apart (the last to the first too
+/// when closed). `original` says for each how many given contacts it is: 1 or 0.
 std::vector<Contact> densified(const ContactPath& path, double radius, double spacing,
                                std::vector<std::uint8_t>& original);
 
@@ -23,7 +23,8 @@ std::vector<Contact> densified(const ContactPath& path, double radius, double sp
 bool concave_at(const ContactPath& path, std::size_t i);
 
 /// Pushes a ball to where it touches the part and gouges nothing: away from the nearest point while that is
-/// nearer than R, towards it while it is farther; when that does not come to rest, radially away from the axis.
+/// nearer than R, towards it while it is farther; when that does not come to rest, radially away from the
+/// axis.
 class Roller {
  public:
   Roller(const geom::MeshIndex& part, double radius, double accuracy_mm);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper's procedure 2: contacts at which the path is more hollow than the ball, and those on crossing loops
-// of the offset path in the plane of the path, are removed. What lies off that plane is not seen.
+// The paper's procedure 2: contacts at which the path is more hollow than the ball, and those on crossing
+// loops of the offset path in the plane of the path, are removed. What lies off that plane is not seen.
 #include <algorithm>
 #include <cmath>
 
@@ -48,7 +48,8 @@ bool cross_each_other(Point2 a, Point2 b, Point2 c, Point2 d) {
 
 class Procedure2 {
  public:
-  Procedure2(const ContactPath& path, const TsiOptions& options) : closed_(path.closed), radius_(options.radius) {
+  Procedure2(const ContactPath& path, const TsiOptions& options)
+      : closed_(path.closed), radius_(options.radius) {
     contacts_ = densified(path, radius_, std::sqrt(0.4 * radius_ * options.tolerance_mm), original_);
     removed_.assign(contacts_.size(), 0);
     for (const Contact& c : contacts_) centers_.push_back(center_of(c, radius_));
@@ -96,7 +97,8 @@ class Procedure2 {
       tree.query(boxes[i], [&](std::uint32_t j) {
         const std::size_t k = j > i ? j : closed_ ? j + n : i;
         if (k < i + 2 || (k + 1) % n == i % n || !near_in_turn(turns, i, k, n)) return true;
-        if (cross_each_other(flat[i], flat[(i + 1) % n], flat[j], flat[(j + 1) % n])) farthest = std::max(farthest, k);
+        if (cross_each_other(flat[i], flat[(i + 1) % n], flat[j], flat[(j + 1) % n]))
+          farthest = std::max(farthest, k);
         return true;
       });
       for (std::size_t k = i + 1; k <= farthest; ++k) removed_[k % n] = 1;
