@@ -21,6 +21,9 @@ constexpr int kAcross = 24;
 // not a smooth top: its height is as wrong as its place times the slope there, side step / (2 R).
 constexpr int kNarrow = 30;
 
+// A ball that runs over the edge of the surface stands beside its foot by more than this part of its radius.
+constexpr double kBeside = 1e-3;
+
 // An end of a stretch counts as abreast when the way to it is square to the path within this (cosine).
 constexpr double kSquare = 0.02;
 
@@ -193,11 +196,19 @@ class Measure {
     if (!any) return ridge;
     for (const Station& a : from) {
       const Abreast next = nearest_on(to, a);
-      const double h = highest(a.foot, finder_.find(next.center, 1e-6));
-      if (next.square) ridge.min_mm = std::min(ridge.min_mm, h);
+      const geom::SurfacePoint foot = finder_.find(next.center, 1e-6);
+      const double h = highest(a.foot, foot);
+      if (next.square && over_surface(a.center, a.foot) && over_surface(next.center, foot))
+        ridge.min_mm = std::min(ridge.min_mm, h);
       ridge.max_mm = std::max(ridge.max_mm, h);
     }
     return ridge;
+  }
+
+  /// Nearest to the ball is a place of the surface, not of its edge.
+  bool over_surface(Point3 center, const geom::SurfacePoint& foot) {
+    const Vec3 n = geom::normal(evaluator_.derivatives(foot.u, foot.v)), way = center - foot.point;
+    return norm(n) == 0 || norm(way - dot(way, n) * n) <= kBeside * options_.radius_mm;
   }
 
   /// The highest place on the line between two feet (straight in the parameters).

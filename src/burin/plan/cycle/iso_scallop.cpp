@@ -203,7 +203,7 @@ class Front {
         const double t = 0.5 * (g.t[i] + g.t[i + 1]);
         const UvPoint p = g.at(t);
         const double u = use(t, std::min(p.w, task_.w.hi), p.w1);
-        note();
+        if (t >= task_.inner_t.lo && t <= task_.inner_t.hi) note();
         if (last_.too_tight) continue;  // lifted: more nodes would follow what is not cut
         const Contact c = sheet_.contact(t, std::min(p.w, task_.w.hi));
         const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
@@ -241,13 +241,13 @@ class Front {
   PairFigures figures_;
 };
 
-PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last) {
+PairFigures between(const Sheet& sheet, geom::Interval inner, const Pass& a, const Pass& b, bool last) {
   PairFigures f;
   f.scallop_min = kNoOverlap;
   f.last = last;
   const Before before(a, sheet.radius());
   for (const Graph& g : b.graphs)
-    for (const double t : samples_along(sheet, {g.lo(), g.hi()}, 24)) {
+    for (const double t : samples_along(sheet, inner, 24)) {
       if (!a.covers(t)) continue;
       const UvPoint p = g.at(t);
       const Cusp c = cusp(sheet, before, t, p.w, p.w1, false);
@@ -289,9 +289,10 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
   }
   if (!pole_hi) {
     Pass border = constant_pass(sheet, task, task.w.hi);
-    if (!r.passes.empty()) r.pairs.push_back(between(sheet, r.passes.back(), border, true));
+    if (!r.passes.empty()) r.pairs.push_back(between(sheet, task.inner_t, r.passes.back(), border, true));
     r.passes.push_back(std::move(border));
   }
+  run_over_edges(sheet, task, r);
   return r;
 }
 

@@ -165,9 +165,11 @@ std::vector<Stretch> stretches(Passes& passes, const Region& region, geom::Direc
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < passes.passes.size(); ++i) {
     Pass& pass = passes.passes[i];
-    const bool whole = region.whole() && pass.graphs.size() == 1;
+    const bool whole = region.whole() && pass.graphs.size() == 1 && !pass.kept;
     for (const Graph& g : pass.graphs)
-      for (const geom::Interval& t : region.cut(g, along)) {
+      for (geom::Interval t : region.cut(g, along)) {
+        if (pass.kept) t = {std::max(t.lo, pass.kept->lo), std::min(t.hi, pass.kept->hi)};
+        if (!(t.lo < t.hi)) continue;
         Stretch s;
         s.pass = static_cast<int>(i);
         s.track = whole ? std::move(pass.track) : cut_track(pass.track, t.lo, t.hi);

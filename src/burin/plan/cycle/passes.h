@@ -14,6 +14,8 @@ namespace burin::cycle {
 /// The rectangle of parameters to be covered and what is allowed.
 struct PassTask {
   geom::Interval t, w;
+  /// What of t is machined; I2 plans on the rest as well, to run over edges that it meets at a slant.
+  geom::Interval inner_t;
   double scallop = 0;
   std::optional<double> side_step;
   double tight_step = 0;  ///< largest side step where the ball does not fit: that of a plane
@@ -33,6 +35,9 @@ struct Passes {
 
 Result<Passes> iso_parametric(const Sheet& sheet, const PassTask& task);
 Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task);
+
+/// Decides how far the paths of a sheet that goes on beyond its edges run over them.
+void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& passes);
 
 // What both share.
 

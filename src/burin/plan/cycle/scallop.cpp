@@ -135,6 +135,10 @@ double Pass::w_at(double t) const {
   return nearest == nullptr ? 0.0 : nearest->at(t).w;
 }
 
+double height_over(const Sheet& sheet, const Contact& at, Point3 centre) {
+  return left_by(sheet, at, centre);
+}
+
 double height_at(const Sheet& sheet, double t, double w, Point3 centre) {
   return left_by(sheet, sheet.contact(t, w), centre);
 }

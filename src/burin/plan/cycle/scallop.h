@@ -25,6 +25,8 @@ struct Cusp {
 struct Pass {
   std::vector<Graph> graphs;  ///< ascending in t, disjoint
   Track track;                ///< of all graphs, one after the other
+  /// What of t is cut: the sheet may go on beyond what is machined. Nothing: all.
+  std::optional<geom::Interval> kept;
 
   bool covers(double t) const;
   double w_at(double t) const;  ///< of the graph that holds t, or the nearest one
@@ -50,6 +52,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
           bool ends, geom::Side side = geom::Side::right);
 
 /// Height left at a surface point by a single ball.
+double height_over(const Sheet& sheet, const Contact& at, Point3 centre);
 double height_at(const Sheet& sheet, double t, double w, Point3 centre);
 
 }  // namespace burin::cycle

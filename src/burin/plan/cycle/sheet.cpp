@@ -80,13 +80,15 @@ double typical_length(const geom::NurbsSurface& s, Direction d) {
 
 }  // namespace
 
-Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, double radius, double stock)
+Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, double radius, double stock,
+             std::optional<geom::Interval> inner)
     : along_(along),
       sign_(along == Direction::u ? sign : -sign),
       radius_(radius),
       stock_(stock),
       t_(surface.domain(along)),
       w_(surface.domain(other(along))),
+      inner_(inner.value_or(t_)),
       size_t_(typical_length(surface, along)),
       size_w_(typical_length(surface, other(along))),
       t_knots_(geom::inner_knots(surface.knots(along), surface.degree(along))),
@@ -96,6 +98,9 @@ Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, do
     if (k.multiplicity >= surface.degree(other(along))) w_creases_.push_back(k.value);
   for (const geom::Knot& k : t_knots_)
     if (k.multiplicity >= surface.degree(along)) t_creases_.push_back(k.value);
+  // The edges are places where paths are cut.
+  if (inner_.lo > t_.lo) t_knots_.insert(t_knots_.begin(), {inner_.lo, 0});
+  if (inner_.hi < t_.hi) t_knots_.push_back({inner_.hi, 0});
 }
 
 geom::SurfaceDerivatives Sheet::at(double t, double w, Side side_t, Side side_w) const {
@@ -246,6 +251,7 @@ Contact Sheet::nearest(Point3 x, double& t, double& w, double step) const {
 }
 
 Point3 Sheet::uv(double t, double w) const {
+  t = std::clamp(t, inner_.lo, inner_.hi);
   return along_ == Direction::u ? Point3{t, w, 0} : Point3{w, t, 0};
 }
 

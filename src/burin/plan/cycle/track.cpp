@@ -46,7 +46,9 @@ class Builder {
       refine(run, node(marks[i + 1], true), 0);
       runs.push_back(std::move(run));
     }
-    return connect(runs);
+    std::vector<bool> over_edge;
+    for (const Mark& m : marks) over_edge.push_back(m.t_knot && at_edge(m.t));
+    return connect(runs, over_edge);
   }
 
  private:
@@ -62,6 +64,12 @@ class Builder {
     return node(m.s, p, side(p.t1), side(p.w1));
   }
 
+  /// An edge that the sheet goes on beyond.
+  bool at_edge(double t) const {
+    const geom::Interval inner = sheet_.t_inner(), all = sheet_.t_range();
+    return (t == inner.lo && inner.lo > all.lo) || (t == inner.hi && inner.hi < all.hi);
+  }
+
   Node node(double s, const UvPoint& p, Side side_t, Side side_w) const {
     const CentreDerivatives d = sheet_.derivatives(p.t, p.w, side_t, side_w);
     Node r;
@@ -71,7 +79,12 @@ class Builder {
     r.tip.d1 = p.t1 * d.at.ct + p.w1 * d.at.cw;
     r.tip.d2 = (p.t1 * p.t1) * d.ctt + (2 * p.t1 * p.w1) * d.ctw + (p.w1 * p.w1) * d.cww + p.t2 * d.at.ct +
                p.w2 * d.at.cw;
-    r.uv = {s, sheet_.uv(p.t, p.w), sheet_.uv_vector(p.t1, p.w1), sheet_.uv_vector(p.t2, p.w2)};
+    // Beyond the edges of the surface the parameters stay on the edge.
+    const geom::Interval inner = sheet_.t_inner();
+    const bool left = side_t == Side::left;
+    const bool outside = p.t < inner.lo || p.t > inner.hi || (at_edge(p.t) && (p.t == inner.lo) == left);
+    const double keep = outside ? 0.0 : 1.0;
+    r.uv = {s, sheet_.uv(p.t, p.w), sheet_.uv_vector(keep * p.t1, p.w1), sheet_.uv_vector(keep * p.t2, p.w2)};
     return r;
   }
 
@@ -139,9 +152,11 @@ class Builder {
     return p;
   }
 
-  Track connect(const std::vector<std::vector<Node>>& runs) const {
+  // `over_edge`: the run begins on an edge that the path runs over.
+  Track connect(const std::vector<std::vector<Node>>& runs, const std::vector<bool>& over_edge) const {
     Track track;
-    for (const std::vector<Node>& run : runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const std::vector<Node>& run = runs[i];
       TrackPiece next = piece_of(run);
       if (track.empty()) {
         track.push_back(std::move(next));
@@ -160,7 +175,7 @@ class Builder {
         continue;
       }
       l.p = r.p = lerp(l.p, r.p, 0.5);
-      if (!smooth(last, run)) {
+      if (over_edge[i] || !smooth(last, run)) {
         track.push_back(std::move(next));
         continue;
       }
