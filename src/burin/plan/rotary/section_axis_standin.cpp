@@ -7,6 +7,8 @@ namespace burin::rotary {
 struct SectionAxis::State {};
 SectionAxis::SectionAxis(const geom::Mesh&, const std::vector<std::array<geom::Vec3, 3>>&, double) {}
 SectionAxis::~SectionAxis() = default;
-SectionReach SectionAxis::at(geom::Point3, geom::Vec3) const { return {}; }
+SectionReach SectionAxis::at(geom::Point3, geom::Vec3) const {
+  return {};
+}
 
 }  // namespace burin::rotary
