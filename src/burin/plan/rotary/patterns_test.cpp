@@ -57,11 +57,14 @@ double distance_to(Point3 p, const Tube& t) {
   return norm(ap - f * ab);
 }
 
-/// The largest distance of points of the surface from the union of the balls, by brute force over a window of X.
-double measured_cusp(const SweptSection& s, const PatternResult& result, double x0, double x1, int nu, int nx) {
+/// The largest distance of points of the surface from the union of the balls, by brute force over a window of
+/// X.
+double measured_cusp(const SweptSection& s, const PatternResult& result, double x0, double x1, int nu,
+                     int nx) {
   std::vector<Tube> near;
   for (const Tube& t : tubes_of(result)) {
-    if (std::max(t.a.x, t.b.x) > x0 - 3 * kRadius && std::min(t.a.x, t.b.x) < x1 + 3 * kRadius) near.push_back(t);
+    if (std::max(t.a.x, t.b.x) > x0 - 3 * kRadius && std::min(t.a.x, t.b.x) < x1 + 3 * kRadius)
+      near.push_back(t);
   }
   double worst = 0;
   const double length = length_of(s.section);
@@ -115,7 +118,8 @@ TEST(Rings, StandExactlyOnTheSurface) {
         EXPECT_GE(p.u, before);
         before = p.u;
         const double back = -c.swept.turn_at(p.p.x);
-        const Point2 q{p.p.y * std::cos(back) - p.p.z * std::sin(back), p.p.y * std::sin(back) + p.p.z * std::cos(back)};
+        const Point2 q{p.p.y * std::cos(back) - p.p.z * std::sin(back),
+                       p.p.y * std::sin(back) + p.p.z * std::cos(back)};
         EXPECT_LT(distance_to(c.swept.section, q), 1e-9);
       }
     }
@@ -137,7 +141,8 @@ TEST(Rings, NormalsAreAcrossTheSurface) {
       // A little inwards is inside of the section.
       const Point3 in = p.p - 1e-4 * p.n;
       const double back = -c.swept.turn_at(in.x);
-      const Point2 q{in.y * std::cos(back) - in.z * std::sin(back), in.y * std::sin(back) + in.z * std::cos(back)};
+      const Point2 q{in.y * std::cos(back) - in.z * std::sin(back),
+                     in.y * std::sin(back) + in.z * std::cos(back)};
       // At the end of a wall the way in may run along the next wall, or, twisted, out of it.
       if (distance_to(c.swept.section, q) < 0.6e-4) continue;
       EXPECT_EQ(winding_number(c.swept.section, q), 1);

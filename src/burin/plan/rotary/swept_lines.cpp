@@ -67,14 +67,24 @@ double LinePlanner::cusp(double a, double b, double rate) const {
   const double reach = gap * (1 + 2 * options_.ball_radius * std::abs(rate)) + 1e-6;
   const CenterLine line_a = line(sweep_.at_length(a, true), rate, reach),
                    line_b = line(sweep_.at_length(b, false), rate, reach);
-  constexpr int kProbes = 16;
-  double worst = 0;
-  std::size_t hint_a = line_a.segments() / 2, hint_b = hint_a;
-  for (int k = 1; k < kProbes; ++k) {
-    const Contact q = sweep_.lift(sweep_.at_length(a + gap * k / kProbes), 0, 0, rate);
-    const double from_a = line_a.entry(q.p, q.n, options_.ball_radius, hint_a),
-                 from_b = line_b.entry(q.p, q.n, options_.ball_radius, hint_b);
-    worst = std::max(worst, std::min(from_a, from_b));
+  const auto height = [&](double f) {
+    std::size_t hint_a = line_a.segments() / 2, hint_b = line_b.segments() / 2;
+    const Contact q = sweep_.lift(sweep_.at_length(a + gap * f), 0, 0, rate);
+    return std::min(line_a.entry(q.p, q.n, options_.ball_radius, hint_a),
+                    line_b.entry(q.p, q.n, options_.ball_radius, hint_b));
+  };
+  // The peak stands where the two balls leave the same: a narrow tip, looked for more and more closely.
+  constexpr int kProbes = 16, kCloser = 4;
+  double worst = 0, peak = 0.5, reach_of_peak = 0.5;
+  for (int round = 0; round < kCloser && worst < std::numeric_limits<double>::infinity(); ++round) {
+    const double lo = std::max(0.0, peak - reach_of_peak), hi = std::min(1.0, peak + reach_of_peak);
+    for (int k = 1; k < kProbes; ++k) {
+      const double f = lo + (hi - lo) * k / kProbes, h = height(f);
+      if (h <= worst) continue;
+      worst = h;
+      peak = f;
+    }
+    reach_of_peak = (hi - lo) / kProbes;
   }
   return worst;
 }
