@@ -53,7 +53,7 @@ TEST(Motion, JointsRunLinearly) {
 TEST(Motion, ProofHolds) {
   Random r(2);
   int clear = 0, blocked = 0;
-  for (int part = 0; part < 60; ++part) {
+  for (int part = 0; part < 20; ++part) {
     const geom::Mesh mesh = cases::random_part(r, 32, 5);
     model::BallTool tool;
     tool.radius = r.between(0.8, 2);
@@ -77,8 +77,7 @@ TEST(Motion, ProofHolds) {
       options.tolerance_mm = options.ball_mm = 0.01;
       const MoveCheck check = check_move(from, to, reach, index, tool, options);
       double worst = -kInf;
-      for (int i = 0; i <= 40; ++i)
-        worst = std::max(worst, deepest(mesh, tool, between(from, to, i / 40.0)));
+      for (int i = 0; i <= 40; ++i) worst = std::max(worst, deepest(mesh, tool, between(from, to, i / 40.0)));
       if (check.clear) {
         ++clear;
         EXPECT_LE(worst, options.tolerance_mm + 1e-6) << part << " " << move;
@@ -89,8 +88,8 @@ TEST(Motion, ProofHolds) {
       }
     }
   }
-  EXPECT_GT(clear, 50);
-  EXPECT_GT(blocked, 50);
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(blocked, 20);
 }
 
 /// A cylinder turned under the ball: the way is an arc about the axis and the ball sinks nowhere.
