@@ -285,10 +285,14 @@ PairFigures between(const Sheet& sheet, geom::Interval inner, const Pass& a, con
 }
 
 Pass border_pass(const Sheet& sheet, const PassTask& task, const std::optional<Graph>& graph, double w) {
-  if (!graph) return constant_pass(sheet, task, w);
   Pass p;
-  p.graphs.push_back(*graph);
-  p.track = build_track(sheet, *graph, task.path_mm);
+  if (graph) {
+    p.graphs.push_back(*graph);
+    p.track = build_track(sheet, *graph, task.path_mm);
+  } else {
+    p = constant_pass(sheet, task, w);
+  }
+  p.fitting = between_valleys(sheet, p);
   return p;
 }
 
@@ -315,6 +319,7 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
       Track part = build_track(sheet, g, task.path_mm);
       next.track.insert(next.track.end(), part.begin(), part.end());
     }
+    next.fitting = between_valleys(sheet, next);
     nodes += node_count(next.track);
     if (nodes > kMaxNodes) return too_many_nodes();
     if (previous != nullptr) r.pairs.push_back(figures);

@@ -78,10 +78,10 @@ void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& r) {
       if (before < i) {
         // A path that ends at the border beyond the edge is followed by the border itself.
         const std::size_t border = r.passes.size() - 1;
-        std::vector<const NearestCentre*> after{&centres[i].centres};
-        if (border != i) after.push_back(&centres[border].centres);
+        std::vector<const NearestCentre*> after{&centres[i].centres(edge)};
+        if (border != i) after.push_back(&centres[border].centres(edge));
         const EdgeRidge ridge = ridge_on_edge(sheet, edge, r.passes[before].w_at(edge),
-                                              r.passes[i].w_at(edge), centres[before].centres, after);
+                                              r.passes[i].w_at(edge), centres[before].centres(edge), after);
         keep(r.passes[before], ridge.foot);
         keep(r.passes[ridge.lowest == 0 ? i : border], ridge.feet[ridge.lowest]);
         PairFigures& f = r.pairs[i - 1];

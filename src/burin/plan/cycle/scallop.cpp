@@ -86,7 +86,7 @@ double edge_cusp(const Sheet& sheet, const Before& before, double t_edge, double
   const auto both = [&](double w, double& ha, double& hb) {
     const Contact q = sheet.contact(t_edge, w);
     const Point3 over = q.s + reach * q.n;
-    ha = left_by(sheet, q, before.centres.find(over).c);
+    ha = left_by(sheet, q, before.centres(t_edge).find(over).c);
     double s = dot(over - b.c, axis);
     if (ends_here && s * inward < 0) s = 0;
     hb = left_by(sheet, q, b.c + s * axis);
@@ -154,7 +154,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
     r.side_step = on_surface(sheet, pole, t, before.pole_w, b.s, t, w);
     return r;
   }
-  NearestCentre::Place a = before.centres.find(b.c);
+  NearestCentre::Place a = before.centres(t).find(b.c);
   double wa = before.path->w_at(a.s);
   const Contact at_a = sheet.contact(a.s, wa);
   // On a crease the ball of the path before may stand on either side of it, or between.
@@ -196,7 +196,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   constexpr int kRounds = 3;
   const double step = distance(b.c, a.c);
   for (int i = 0; i < kRounds; ++i) {
-    const NearestCentre::Place next = before.centres.find(x);
+    const NearestCentre::Place next = before.centres(t).find(x);
     if (distance(next.c, b.c) > 2 * step) break;
     const double moved = distance(next.c, a.c);
     if (!(moved > 1e-4 * step)) break;
