@@ -212,11 +212,12 @@ class Front {
           continue;
         }
         const double u = use(t, std::min(p.w, hi(t)), p.w1);
-        if (t >= task_.inner_t.lo && t <= task_.inner_t.hi) note();
         if (last_.too_tight) continue;  // lifted: more nodes would follow what is not cut
         const Contact c = sheet_.contact(t, std::min(p.w, hi(t)));
         const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
+        // Where paths bend over a crease the spline may swing over less than what counts.
         if (!(apart > kFinest * last_.side_step)) continue;
+        if (t >= task_.inner_t.lo && t <= task_.inner_t.hi) note();
         const bool half_of_pole = pole_hi_ && u < kAim;
         if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(p);
       }
@@ -292,6 +293,7 @@ Pass border_pass(const Sheet& sheet, const PassTask& task, const std::optional<G
   } else {
     p = constant_pass(sheet, task, w);
   }
+  p.valley = graph.has_value();
   p.fitting = between_valleys(sheet, p);
   return p;
 }

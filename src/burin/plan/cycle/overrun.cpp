@@ -85,7 +85,9 @@ void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& r) {
         keep(r.passes[before], ridge.foot);
         keep(r.passes[ridge.lowest == 0 ? i : border], ridge.feet[ridge.lowest]);
         PairFigures& f = r.pairs[i - 1];
-        if (f.scallop_min != kNoOverlap && ridge.height < kNoOverlap)
+        // Next to a valley no ball gets everywhere.
+        const bool valley = r.passes[before].valley || r.passes[i].valley;
+        if (!valley && f.scallop_min != kNoOverlap && ridge.height < kNoOverlap)
           f.scallop_max = std::max(f.scallop_max, ridge.height);
       }
       before = i;

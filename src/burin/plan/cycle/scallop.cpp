@@ -111,6 +111,14 @@ bool fold(const Contact& c) {
   return turned < 0 || trace < 0;
 }
 
+// A crease across the paths within two steps of the new path's place at t, or between it and the old one's.
+bool near_crease(const Sheet& sheet, double t, double s, double speed, double step) {
+  constexpr double kSteps = 2;
+  return std::any_of(sheet.t_creases().begin(), sheet.t_creases().end(), [&](double crease) {
+    return (t - crease) * (s - crease) <= 0 || std::abs(t - crease) * speed < kSteps * step;
+  });
+}
+
 double on_surface(const Sheet& sheet, Point3 sa, double ta, double wa, Point3 sb, double tb, double wb) {
   const Point3 mid = sheet.point(0.5 * (ta + tb), 0.5 * (wa + wb));
   const double one = distance(sa, sb), two = distance(sa, mid) + distance(mid, sb);
@@ -173,9 +181,9 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   Vec3 axis = norm(old) > 0 && std::abs(dot(old, own)) < kParallel ? old : own;
   const Vec3 apart = a.c - b.c;
   // Beyond its end the path before is the sphere about it: what stands between two spheres lies in the plane
-  // that holds both centres, whatever the direction of the new path. Over creases that the paths cross both
+  // that holds both centres, whatever the direction of the new path. At creases that the paths cross both
   // paths have bends, whose directions say nothing of the path as a whole; there too.
-  const bool bends = !ends && !sheet.t_creases().empty();
+  const bool bends = !ends && near_crease(sheet, t, a.s, norm(b.st), distance(b.c, a.c));
   if (const Vec3 around = cross(apart, down); (a.at_end || bends) && norm(around) > 0)
     axis = dot(around, axis) < 0 ? -unit(around) : unit(around);
   const double radius = sheet.radius();

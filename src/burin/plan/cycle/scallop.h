@@ -25,6 +25,7 @@ struct Cusp {
 struct Pass {
   std::vector<Graph> graphs;  ///< ascending in t, disjoint
   Track track;                ///< of all graphs, one after the other
+  bool valley = false;        ///< runs along one, where the ball touches both flanks
   /// Where the path crosses valleys: the track between them without the parts in which the ball does not fit,
   /// up to the crease at `until`. Empty: it crosses none.
   struct Section {
