@@ -55,22 +55,20 @@ std::optional<double> touching(const Sheet& a, const Sheet& b, double t, double 
   return std::nullopt;
 }
 
-/// The places of one flank. Where the solution leaves the surface at the ends of t the last one counts.
+/// The places of one flank. Where the ball would touch beyond the ends of the other one, the next place that
+/// was found counts.
 std::optional<Graph> flank(const Sheet& a, const Sheet& b, const std::vector<double>& places, double crease) {
   std::vector<std::optional<double>> found;
   for (const double t : places) found.push_back(touching(a, b, t, crease));
-  const Interval inner = a.t_inner();
+  const auto has = [](const std::optional<double>& w) { return w.has_value(); };
+  const auto first = std::find_if(found.begin(), found.end(), has);
+  const auto last = std::find_if(found.rbegin(), found.rend(), has).base();
+  if (last - first < static_cast<std::ptrdiff_t>(found.size() / 2) || !std::all_of(first, last, has))
+    return std::nullopt;
+  std::fill(found.begin(), first, *first);
+  std::fill(last, found.end(), *(last - 1));
   std::vector<double> w;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    std::optional<double> here = found[i];
-    if (!here) {
-      if (places[i] > inner.lo && places[i] < inner.hi) return std::nullopt;
-      const bool start = places[i] <= inner.lo;
-      for (std::size_t k = i; !here && (start ? ++k < found.size() : k-- > 0);) here = found[k];
-      if (!here) return std::nullopt;
-    }
-    w.push_back(*here);
-  }
+  for (const std::optional<double>& f : found) w.push_back(*f);
   return spline(places, w);
 }
 

@@ -212,11 +212,12 @@ class Front {
           continue;
         }
         const double u = use(t, std::min(p.w, hi(t)), p.w1);
-        if (t >= task_.inner_t.lo && t <= task_.inner_t.hi) note();
         if (last_.too_tight) continue;  // lifted: more nodes would follow what is not cut
         const Contact c = sheet_.contact(t, std::min(p.w, hi(t)));
         const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
+        // Where paths bend over a crease the spline may swing over less than what counts.
         if (!(apart > kFinest * last_.side_step)) continue;
+        if (t >= task_.inner_t.lo && t <= task_.inner_t.hi) note();
         const bool half_of_pole = pole_hi_ && u < kAim;
         if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(p);
       }
@@ -285,10 +286,15 @@ PairFigures between(const Sheet& sheet, geom::Interval inner, const Pass& a, con
 }
 
 Pass border_pass(const Sheet& sheet, const PassTask& task, const std::optional<Graph>& graph, double w) {
-  if (!graph) return constant_pass(sheet, task, w);
   Pass p;
-  p.graphs.push_back(*graph);
-  p.track = build_track(sheet, *graph, task.path_mm);
+  if (graph) {
+    p.graphs.push_back(*graph);
+    p.track = build_track(sheet, *graph, task.path_mm);
+  } else {
+    p = constant_pass(sheet, task, w);
+  }
+  p.valley = graph.has_value();
+  p.fitting = between_valleys(sheet, p);
   return p;
 }
 
@@ -315,6 +321,7 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
       Track part = build_track(sheet, g, task.path_mm);
       next.track.insert(next.track.end(), part.begin(), part.end());
     }
+    next.fitting = between_valleys(sheet, next);
     nodes += node_count(next.track);
     if (nodes > kMaxNodes) return too_many_nodes();
     if (previous != nullptr) r.pairs.push_back(figures);

@@ -48,6 +48,8 @@ void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& passes);
 
 /// A ball at (t, w) cuts into the other flank of a crease across the paths.
 bool in_valley(const Sheet& sheet, double t, double w);
+/// Pass::fitting.
+std::vector<Pass::Section> between_valleys(const Sheet& sheet, const Pass& pass);
 
 // What both share.
 

@@ -3,6 +3,7 @@
 // and what it would leave without says nothing.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "burin/plan/cycle/passes.h"
 
@@ -49,6 +50,46 @@ bool in_valley(const Sheet& sheet, double t, double w) {
     if (from_flank(sheet, b.c, crease, above, w) < (1 - kCuts) * reach) return true;
   }
   return false;
+}
+
+std::vector<Pass::Section> between_valleys(const Sheet& sheet, const Pass& pass) {
+  struct Gap {
+    double lo = 0, hi = 0, crease = 0;
+  };
+  std::vector<Gap> gaps;
+  for (const Graph& g : pass.graphs) {
+    const auto inside = [&](double t) { return in_valley(sheet, t, g.at(t).w); };
+    // From a place in the valley to where the ball fits, through the nodes and then between two of them.
+    const auto edge = [&](double in, auto first, auto last) {
+      double out = in;
+      for (; first != last && inside(out); ++first) in = out, out = *first;
+      constexpr int kHalvings = 30;
+      for (int i = 0; i < kHalvings && !inside(out); ++i) {
+        const double mid = 0.5 * (in + out);
+        if (inside(mid))
+          in = mid;
+        else if (out = mid; std::abs(out - in) < 1e-9 * (g.hi() - g.lo()))
+          break;
+      }
+      return out;
+    };
+    for (const double crease : sheet.t_creases()) {
+      if (!(crease > g.lo() && crease < g.hi()) || !inside(crease)) continue;
+      const auto above = std::upper_bound(g.t.begin(), g.t.end(), crease);
+      const auto below = std::make_reverse_iterator(std::lower_bound(g.t.begin(), g.t.end(), crease));
+      gaps.push_back({edge(crease, below, g.t.rend()), edge(crease, above, g.t.end()), crease});
+    }
+  }
+  if (gaps.empty()) return {};
+  std::vector<Pass::Section> out;
+  double from = pass.graphs.front().lo();
+  gaps.push_back({pass.graphs.back().hi(), 0, pass.graphs.back().hi()});
+  for (const Gap& gap : gaps) {
+    Track part = cut_track(pass.track, from, gap.lo);
+    if (!part.empty()) out.push_back({gap.crease, std::move(part)});
+    from = std::max(from, gap.hi);
+  }
+  return out;
 }
 
 }  // namespace burin::cycle
