@@ -15,6 +15,7 @@
 #include "burin/kinematics/joint_path.h"
 #include "burin/model/tool.h"
 #include "burin/plan/rotary/rotary.h"
+#include "burin/verify/motion_check.h"
 
 namespace burin::job {
 
@@ -62,6 +63,16 @@ struct RotaryJob {
   cl::Program cl;
   kinematics::JointPath joints;
 };
+
+/// The joint moves against the part by verify/motion_check, which shares nothing with the planner. End faces
+/// and what lies outside of x_min to x_max must not be cut, but need not be reached.
+struct RotaryCheck {
+  verify::SampledDesign design;
+  verify::MotionCheckReport report;
+  double bound_mm = 0;  ///< of the check, the mesh's deflection included
+};
+RotaryCheck check_rotary_job(const RotaryJobFile& file, const RotaryJob& job,
+                             const kinematics::Kinematics& machine);
 
 /// The whole of it on a machine with one rotary axis in the table, along X. Error (unsupported): another
 /// machine.

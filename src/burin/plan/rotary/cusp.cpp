@@ -30,11 +30,6 @@ double CenterLine::distance2(Point3 q, std::size_t segment) const {
   return dot(d, d);
 }
 
-bool CenterLine::beyond_end(Point3 q, std::size_t segment) const {
-  const Point3 a = points_[segment], b = points_[segment + 1];
-  return (segment == 0 && dot(q - a, b - a) < 0) || (segment + 1 == segments() && dot(q - b, b - a) > 0);
-}
-
 std::size_t CenterLine::closest(Point3 q, std::size_t hint) const {
   const std::size_t n = segments();
   std::size_t best = std::min(hint, n - 1);
@@ -57,27 +52,41 @@ std::size_t CenterLine::closest(Point3 q, std::size_t hint) const {
   return best;
 }
 
+Point3 CenterLine::place(Point3 q, std::size_t segment) const {
+  const Point3 a = points_[segment], b = points_[(segment + 1) % points_.size()];
+  const double length2 = dot(b - a, b - a);
+  return length2 > 0 ? lerp(a, b, std::clamp(dot(q - a, b - a) / length2, 0.0, 1.0)) : a;
+}
+
+namespace {
+
+/// Where the ray from q enters the ball.
+double into_ball(Point3 q, Vec3 n, Point3 center, double radius) {
+  const Vec3 d = q - center;
+  const double along = dot(d, n), c = dot(d, d) - radius * radius;
+  if (c <= 0) return 0;
+  const double root = along * along - c;
+  return root < 0 || along >= 0 ? kNever : c / (-along + std::sqrt(root));
+}
+
+}  // namespace
+
 double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) const {
-  double t = 0;
-  // The way is as good as straight near the segment that is nearest to where the ray enters: twice is enough.
-  for (int round = 0; round < 3; ++round) {
+  // The ball that belongs to the contact (q, n) would stand here: the nearest one faces it. (The centre
+  // nearest to q says nothing at a corner of the part, about which the ball rolls at one distance.)
+  hint = closest(q + radius * n, hint);
+  double t = into_ball(q, n, place(q + radius * n, hint), radius);
+  // Of all balls the one that is entered first has its centre nearest to the place where it is entered.
+  constexpr int kRounds = 6;
+  for (int round = 0; round < kRounds && t > 0 && t < kNever; ++round) {
     const Point3 at = q + t * n;
-    const std::size_t segment = closest(at, hint);
-    if (round > 0 && segment == hint) break;
+    std::size_t segment = closest(at, hint);
+    const double sooner = into_ball(q, n, place(at, segment), radius);
+    if (!(sooner < t)) break;
+    const bool done = sooner > 0.9999 * t;
+    t = sooner;
     hint = segment;
-    const Point3 a = points_[segment], b = points_[(segment + 1) % points_.size()];
-    Vec3 h = unit(b - a), d = q - a;
-    if (!closed_ && beyond_end(at, segment)) {  // the ball that stands at the end
-      d = q - (segment == 0 ? a : b);
-      h = {};
-    }
-    const Vec3 n_across = n - dot(n, h) * h, d_across = d - dot(d, h) * h;
-    const double aa = dot(n_across, n_across), ab = dot(d_across, n_across),
-                 c = dot(d_across, d_across) - radius * radius;
-    if (c <= 0) return 0;
-    const double root = ab * ab - aa * c;
-    if (root < 0 || ab >= 0) return kNever;
-    t = c / (-ab + std::sqrt(root));
+    if (done) break;
   }
   return t;
 }
