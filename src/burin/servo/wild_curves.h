@@ -25,7 +25,7 @@ class WildCurves {
     at_ = {real(-reach, reach), real(-reach, reach), real(-reach, reach)};
     heading_ = direction();
     // Nothing is finer than the coordinates can say.
-    scale_ = log_uniform(std::max(1e-4, 1e-9 * reach), 30);
+    scale_ = log_uniform(std::max(1e-4, 1e-9 * reach), 10);
     const int n = integer(1, 4);
     for (int i = 0; i < n; ++i) add(out);
     return out;
@@ -57,10 +57,10 @@ class WildCurves {
     return geom::unit(v);
   }
 
-  /// Slow ones only on short paths: a part is run through in two seconds at most.
+  /// Slow ones only on short paths: a part is run through in half a second at most.
   double feed(double length) {
     if (integer(0, 9) == 0) return 0;
-    return std::max(log_uniform(0.05, 60000), 60 * length / 2);
+    return std::max(log_uniform(0.05, 60000), 60 * length / 0.5);
   }
 
   void append(std::vector<Stretch>& out, geom::QuinticPath path) {

@@ -206,7 +206,7 @@ TEST(Axis, LeansWhereItCan) {
   const AxisChain chain = choose_axes(layers, options);
   EXPECT_TRUE(chain.breaks.empty());
   for (int i = 0; i < 100; ++i) {
-    if (i >= 40 && i < 60) continue;
+    if (i >= 20 && i < 80) continue;  // on the way there and back
     EXPECT_GE(std::abs(turned(chain.theta[i] - layers[i].normal)), 0.2 - 1e-6) << i;
   }
 }

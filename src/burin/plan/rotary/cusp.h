@@ -25,7 +25,7 @@ class CenterLine {
 
  private:
   double distance2(geom::Point3 q, std::size_t segment) const;
-  bool beyond_end(geom::Point3 q, std::size_t segment) const;
+  geom::Point3 place(geom::Point3 q, std::size_t segment) const;
   std::size_t closest(geom::Point3 q, std::size_t hint) const;
 
   std::vector<geom::Point3> points_;

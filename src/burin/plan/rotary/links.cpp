@@ -173,7 +173,7 @@ bool Linker::link(const AxisPose& to, std::size_t path) {
     poses.push_back(to);
     bool clear = true;
     for (std::size_t i = 1; clear && i < poses.size(); ++i) {
-      const MoveCheck c = check_move(poses[i - 1], poses[i], shared_.reach, shared_.mesh, shared_.tool, o);
+      const MoveCheck c = check_move(poses[i - 1], poses[i], shared_.body, shared_.mesh, shared_.tool, o);
       clear = c.clear;
       if (clear) plan_.quality.gouge_max_mm = std::max(plan_.quality.gouge_max_mm, c.ball_depth);
     }

@@ -159,7 +159,7 @@ class PathPlanner {
     if (ssi > tolerance) return false;
     MotionOptions o;
     o.tolerance_mm = o.ball_mm = tolerance;
-    const MoveCheck check = check_move(a.pose(), b.pose(), shared_.reach, shared_.mesh, shared_.tool, o);
+    const MoveCheck check = check_move(a.pose(), b.pose(), shared_.body, shared_.mesh, shared_.tool, o);
     if (!check.clear) return false;
     out_.ssi_mm = std::max(out_.ssi_mm, ssi);
     out_.gouge_mm = std::max(out_.gouge_mm, check.ball_depth);

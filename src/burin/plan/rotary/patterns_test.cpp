@@ -90,8 +90,24 @@ TEST(Rings, NormalsAreAcrossTheSurface) {
   }
 }
 
+// Sharp teeth that lean over: the ball rolls about an edge, all of its centres there equally near.
+SweptSection undercut_teeth() {
+  std::vector<Point2> corners;
+  const auto add = [&](double radius, double at) {
+    corners.push_back({radius * std::cos(geom::radians(at)), radius * std::sin(geom::radians(at))});
+  };
+  for (double at = 0; at < 360; at += 72) {
+    add(20, at);
+    add(12, at - 12);
+    add(20, at + 65);
+  }
+  return cases::swept(cases::polygon(corners), 6, 6 * kPi / 50);
+}
+
 TEST(Rings, CuspHoldsAndIsUsed) {
-  for (const Case& c : all_cases()) {
+  std::vector<Case> sections = all_cases();
+  sections.push_back({"undercut", undercut_teeth(), false});
+  for (const Case& c : sections) {
     SCOPED_TRACE(c.name);
     const Part part = part_of(c.swept);
     const PatternResult result = paths_of(part, Pattern::rings);

@@ -78,6 +78,7 @@ class Planner {
     auto paths = make_paths(part_, pattern, diagnostics_);
     if (!paths) return paths.error();
     const geom::MeshIndex mesh(part_.mesh);
+    const BodyIndex body(part_.mesh);
     const ReachIndex reach(part_.mesh, tool_);
     const double far =
         4 * (std::max(part_.radius_max, options_.stock_radius) + options_.safety_mm) + tool_.shank_length;
@@ -85,7 +86,7 @@ class Planner {
     std::unique_ptr<SectionAxis> section;
     if (options_.tai == Tai::section)
       section = std::make_unique<SectionAxis>(part_.mesh, part_.corner_normals, tool_.radius);
-    const Shared shared{part_, tool_, options_, mesh, reach, lift, section.get()};
+    const Shared shared{part_, tool_, options_, mesh, body, reach, lift, section.get()};
     follow(shared, paths->paths);
     plan_.quality.scallop_mm = paths->scallop_max;
     plan_.quality.side_step_min_mm = paths->side_step_min;
