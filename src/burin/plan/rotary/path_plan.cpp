@@ -209,6 +209,8 @@ class PathPlanner {
       else if (!node.cut)
         node.cut = proven(nodes_[i - 1], node);
       if (!node.open()) node.place.state = State::unreachable;
+      if (i == 0 || node.cut) continue;
+      line_->between(nodes_[i - 1].s, node.s, [&](const Place& p) { out_.uncut.push_back(p.contact.p); });
     }
     out_.nodes = std::move(nodes_);
   }
