@@ -196,8 +196,8 @@ Error in(const std::string& file, Error error) {
   return error;
 }
 
-/// Shares of the tolerance: section fit and mesh each leave the design by a tenth and a fifth of it.
-constexpr double kFitShare = 0.1, kMeshShare = 0.2;
+/// Share of the tolerance by which the section's fit may leave the drawing.
+constexpr double kFitShare = 0.1;
 
 }  // namespace
 
@@ -381,19 +381,24 @@ std::vector<verify::CheckedMove> checked_moves(const kinematics::JointPath& path
 
 }  // namespace
 
+RotaryCheck check_rotary_moves(const rotary::Part& part, const model::BallTool& tool,
+                               const std::vector<verify::CheckedMove>& moves,
+                               const kinematics::Kinematics& machine, double tolerance_mm) {
+  // Samples so close that what lies between them adds a tenth of the tolerance.
+  const double least = std::min(tool.radius, tool.shank_radius);
+  RotaryCheck check;
+  check.design = design_samples(part, std::sqrt(4 * least * 0.1 * tolerance_mm));
+  verify::MotionCheckOptions options;
+  options.motion_mm = 0.02 * tolerance_mm;
+  check.report = verify::check_motion(check.design, moves, machine, checked_tool(tool), options);
+  check.bound_mm = check.report.bound_mm + (part.swept ? 0 : part.deflection_mm);
+  return check;
+}
+
 RotaryCheck check_rotary_job(const RotaryJobFile& file, const RotaryJob& job,
                              const kinematics::Kinematics& machine) {
-  // Samples so close that what lies between them adds a tenth of the tolerance.
-  const double least = std::min(file.tool.radius, file.tool.shank_radius);
-  const double spacing = std::sqrt(4 * least * 0.1 * file.options.tolerance_mm);
-  RotaryCheck check;
-  check.design = design_samples(job.part, spacing);
-  verify::MotionCheckOptions options;
-  options.motion_mm = 0.02 * file.options.tolerance_mm;
-  check.report = verify::check_motion(check.design, checked_moves(job.joints), machine,
-                                      checked_tool(file.tool), options);
-  check.bound_mm = check.report.bound_mm + (job.part.swept ? 0 : job.part.deflection_mm);
-  return check;
+  return check_rotary_moves(job.part, file.tool, checked_moves(job.joints), machine,
+                            file.options.tolerance_mm);
 }
 
 }  // namespace burin::job

@@ -47,6 +47,9 @@ struct RotaryJobFile {
   double spindle_rpm = 0;  ///< 0: no spindle words
 };
 
+/// Share of the tolerance by which the part's mesh may leave the design.
+inline constexpr double kMeshShare = 0.2;
+
 /// Every key checked; errors with file, line, column and what would be accepted.
 Result<RotaryJobFile> read_rotary_job(std::string_view toml, const std::string& file_name);
 
@@ -71,6 +74,9 @@ struct RotaryCheck {
   verify::MotionCheckReport report;
   double bound_mm = 0;  ///< of the check, the mesh's deflection included
 };
+RotaryCheck check_rotary_moves(const rotary::Part& part, const model::BallTool& tool,
+                               const std::vector<verify::CheckedMove>& moves,
+                               const kinematics::Kinematics& machine, double tolerance_mm);
 RotaryCheck check_rotary_job(const RotaryJobFile& file, const RotaryJob& job,
                              const kinematics::Kinematics& machine);
 

@@ -62,9 +62,9 @@ Vec2 move_off(Point3 c, const std::vector<Wall>& walls, double radius) {
 Roller::Roller(const geom::MeshIndex& part, double radius, double accuracy_mm)
     : part_(part), radius_(radius), accuracy_(accuracy_mm), size_(part.bounds().diagonal() + 4 * radius) {}
 
-double Roller::depth(Point3 center) const {
-  const auto hit = part_.nearest(center, radius_);
-  return hit ? radius_ - hit->distance : 0;
+double Roller::room(Point3 center) const {
+  const auto hit = part_.nearest(center, 2 * radius_);
+  return hit ? hit->distance - radius_ : radius_;
 }
 
 bool Roller::push_out(Point3& c) const {

@@ -31,8 +31,8 @@ class Roller {
 
   /// False when there is no such place. u and w of `place` stay.
   bool touch(geom::Point3 near, Place& place) const;
-  /// How deep the nearest point of the mesh lies in the ball (0: not at all).
-  double depth(geom::Point3 center) const;
+  /// Distance from the ball to the mesh, negative where the ball holds some of it; radius when there is more.
+  double room(geom::Point3 center) const;
 
  private:
   bool push_out(geom::Point3& c) const;
