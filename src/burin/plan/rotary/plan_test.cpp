@@ -272,8 +272,10 @@ TEST(Plan, RandomPartsAreNotGouged) {
     cut += result->counts.cl_points > 10;
     expect_joined(*result);
     EXPECT_LE(gouge(*result, part->mesh, c.tool), options.tolerance_mm + 1e-6) << round;
-    // Samples 0.1 mm apart stand up to (0.05 mm)^2 / (2 R) further away.
-    EXPECT_LE(left_over(*result, *part, c.tool, options), result->quality.excess_max_mm + 0.005) << round;
+    // Samples 0.1 mm apart stand up to (0.05 mm)^2 / (2 R) further away; a step may leave moved places, too.
+    EXPECT_LE(left_over(*result, *part, c.tool, options),
+              result->quality.excess_max_mm + options.tolerance_mm)
+        << round;
     EXPECT_LE(result->quality.gouge_max_mm, options.tolerance_mm + 1e-9);
     EXPECT_EQ(result->counts.unreachable > 0, diagnostics.count("unreachable") > 0);
     for (const Leg& leg : result->legs)

@@ -35,7 +35,8 @@ class Cuts {
         longest_ = std::max(longest_, chords_.back().x_max - chords_.back().x_min);
       }
     }
-    std::sort(chords_.begin(), chords_.end(), [](const Chord& a, const Chord& b) { return a.x_min < b.x_min; });
+    std::sort(chords_.begin(), chords_.end(),
+              [](const Chord& a, const Chord& b) { return a.x_min < b.x_min; });
   }
 
   /// Distance of the nearest cut; infinite when there is none.
