@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -58,14 +60,48 @@ inline double distance_to(Point3 p, const Tube& t) {
   return norm(ap - f * ab);
 }
 
-/// The largest distance of points of the surface from the union of the balls, by brute force over a window of
-/// X.
+/// Tubes by cells of space, so that a point looks only at those near it.
+class TubeGrid {
+ public:
+  TubeGrid(const std::vector<Tube>& tubes, double x0, double x1) : tubes_(tubes) {
+    for (std::size_t i = 0; i < tubes.size(); ++i) {
+      if (std::max(tubes[i].a.x, tubes[i].b.x) < x0 || std::min(tubes[i].a.x, tubes[i].b.x) > x1) continue;
+      geom::Box3 box;
+      box.add(tubes[i].a);
+      box.add(tubes[i].b);
+      walk(box, [&](std::vector<std::size_t>& cell) { cell.push_back(i); });
+    }
+  }
+  /// Distance to the nearest, at most `within`.
+  double nearest(Point3 p, double within) {
+    double least = within;
+    walk(geom::Box3{p, p}.grown(within), [&](std::vector<std::size_t>& cell) {
+      for (const std::size_t i : cell) least = std::min(least, distance_to(p, tubes_[i]));
+    });
+    return least;
+  }
+
+ private:
+  template <class Visit>
+  void walk(const geom::Box3& box, const Visit& visit) {
+    for (int x = at(box.lo.x); x <= at(box.hi.x); ++x) {
+      for (int y = at(box.lo.y); y <= at(box.hi.y); ++y) {
+        for (int z = at(box.lo.z); z <= at(box.hi.z); ++z) visit(cells_[{x, y, z}]);
+      }
+    }
+  }
+  static int at(double v) { return int(std::floor(v / 1.5)); }
+
+  const std::vector<Tube>& tubes_;
+  std::map<std::array<int, 3>, std::vector<std::size_t>> cells_;
+};
+
+/// The largest distance of points of the surface from the union of the balls, over a window of X; 1 mm and
+/// more is 1.
 inline double measured_cusp(const SweptSection& s, const PatternResult& result, double x0, double x1, int nu,
                             int nx) {
-  std::vector<Tube> near;
-  for (const Tube& t : tubes_of(result)) {
-    if (std::max(t.a.x, t.b.x) > x0 - 3 * kBall && std::min(t.a.x, t.b.x) < x1 + 3 * kBall) near.push_back(t);
-  }
+  const std::vector<Tube> tubes = tubes_of(result);
+  TubeGrid grid(tubes, x0 - 3 * kBall, x1 + 3 * kBall);
   double worst = 0;
   const double length = length_of(s.section);
   for (const geom::Segment& seg : s.section.segments) {
@@ -76,8 +112,9 @@ inline double measured_cusp(const SweptSection& s, const PatternResult& result, 
         const double x = x0 + (x1 - x0) * k / nx;
         const double a = s.turn_at(x);
         const Point3 p{x, c.x * std::cos(a) - c.y * std::sin(a), c.x * std::sin(a) + c.y * std::cos(a)};
-        double least = std::numeric_limits<double>::infinity();
-        for (const Tube& t : near) least = std::min(least, distance_to(p, t));
+        const double reach = kBall + worst + 0.02;  // usually that near: else a wider look
+        double least = grid.nearest(p, reach);
+        if (least >= reach) least = grid.nearest(p, kBall + 1);
         worst = std::max(worst, least - kBall);
       }
     }
