@@ -23,7 +23,7 @@ double turned_by(double a) {
 class PathPlanner {
  public:
   PathPlanner(const Shared& shared, const ContactPath& path, const AxisPose& start)
-      : shared_(shared), start_(start) {
+      : shared_(shared), path_(path), start_(start) {
     const RotaryOptions& o = shared.options;
     TsiResult tsi = resolve_tsi(path, shared.mesh, {o.tsi, shared.tool.radius, o.tolerance_mm});
     out_.tsi = tsi.interfering;
@@ -201,6 +201,7 @@ class PathPlanner {
   }
 
   void finish() {
+    bool moved = false;
     // The last round may have turned angles after its proofs, or stopped by its number.
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       Node& node = nodes_[i];
@@ -209,11 +210,21 @@ class PathPlanner {
       else if (!node.cut)
         node.cut = proven(nodes_[i - 1], node);
       if (!node.open()) node.place.state = State::unreachable;
+      if (i == 0 || node.cut) continue;
+      line_->between(nodes_[i - 1].s, node.s, [&](const Place& p) {
+        out_.uncut.push_back(p.contact.p);
+        moved = moved || p.state == State::moved;
+      });
     }
+    // The contacts that a moved place stands for are none of its own.
+    const std::size_t stride = 1 + path_.points.size() / 4096;
+    for (std::size_t i = 0; moved && i < path_.points.size(); i += stride)
+      out_.uncut.push_back(path_.points[i].p);
     out_.nodes = std::move(nodes_);
   }
 
   const Shared& shared_;
+  const ContactPath& path_;
   AxisPose start_;
   CenterPath dense_;
   const CenterLine* line_ = nullptr;
@@ -235,8 +246,12 @@ void find_reach(const Shared& shared, Node& node) {
     node.initial_interferes = true;
     return;
   }
-  AngleSet exact = shared.reach.reachable(c);
+  // A ball that sinks in is not cut with, not even at a single place.
+  const double depth = shared.options.tolerance_mm;
+  const bool gouges = depth < shared.tool.radius && shared.mesh.nearest(c, shared.tool.radius - depth);
+  AngleSet exact = gouges ? AngleSet{} : shared.reach.reachable(c);
   node.initial_interferes = !contains(exact, node.initial);
+  if (gouges) return;
   // In a slot as wide as the tool the ball sinks in by what resolve_tsi allows, and the shank with it.
   ReachOptions lenient;
   lenient.grow_mm = -shared.options.tolerance_mm / 2;

@@ -109,6 +109,7 @@ class Planner {
       q.ssi_max_mm = std::max(q.ssi_max_mm, path.ssi_mm);
       q.gouge_max_mm = std::max(q.gouge_max_mm, path.gouge_mm);
       q.excess_max_mm = std::max(q.excess_max_mm, path.excess_mm);
+      uncut_.insert(uncut_.end(), path.uncut.begin(), path.uncut.end());
       linker.add(std::move(path), i);
     }
     linker.finish();
@@ -152,7 +153,7 @@ class Planner {
   // --- what could not be done
 
   void report() {
-    const double worst = uncut_excess(plan_, tool_.radius);
+    const double worst = uncut_excess(plan_, uncut_, tool_.radius);
     RotaryQuality& q = plan_.quality;
     q.excess_max_mm = std::max({q.excess_max_mm, worst, q.ssi_max_mm});
     if (plan_.counts.unreachable == 0) return;
@@ -208,6 +209,7 @@ class Planner {
   const RotaryOptions& options_;
   Diagnostics& diagnostics_;
   RotaryPlan plan_;
+  std::vector<geom::Point3> uncut_;
 };
 
 }  // namespace
