@@ -87,7 +87,8 @@ double machining_s(const job::RotaryJob& job, const kinematics::Kinematics& mach
 }
 
 void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, const post::NcText& nc,
-                 const kinematics::Kinematics& machine, Session& session) {
+                 const kinematics::Kinematics& machine, const std::optional<job::RotaryCheck>& check,
+                 Session& session) {
   const rotary::RotaryOptions& o = file.options;
   const rotary::RotaryCounts& c = job.plan.counts;
   const rotary::RotaryQuality& q = job.plan.quality;
@@ -123,17 +124,41 @@ void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, cons
               {"nc_blocks", nc.moves},
               {"feed_limited", job.joints.feed_limited}};
   r.quality = {{"ssi_max_mm", q.ssi_max_mm},
-               {"gouge_max_mm", q.gouge_max_mm},
-               {"excess_max_mm", q.excess_max_mm},
+               {"gouge_max_mm", check ? check->report.gouge_max_mm() : q.gouge_max_mm},
+               {"excess_max_mm", check ? check->report.excess_max_mm : q.excess_max_mm},
                {"axis_step_max_deg", geom::degrees(q.axis_step_max)},
                {"axis_turn_total_deg", geom::degrees(q.axis_turn_total)},
                {"scallop_mm", q.scallop_mm},
                {"side_step_min_mm", q.side_step_min_mm},
-               {"side_step_max_mm", q.side_step_max_mm}};
+               {"side_step_max_mm", q.side_step_max_mm},
+               {"gouge_planned_mm", q.gouge_max_mm},
+               {"uncut_planned_mm", q.excess_max_mm}};
+  if (check) {
+    r.quality["gouge_ball_mm"] = check->report.ball.mm;
+    r.quality["gouge_shank_mm"] = check->report.shank.mm;
+    r.quality["gouge_holder_mm"] = check->report.holder.mm;
+    r.quality["bound_mm"] = check->bound_mm;
+  }
   r.lengths_mm = {{"cut", job.plan.lengths_mm.cut},
                   {"link", job.plan.lengths_mm.link},
                   {"rapid", job.plan.lengths_mm.rapid}};
   r.time_s["machining"] = machining_s(job, machine);
+}
+
+/// What the independent check found beyond the tolerance.
+void warn_of_gouge(const job::RotaryJobFile& file, const job::RotaryCheck& check, Session& session) {
+  const auto say = [&](const verify::Finding& found, const char* what) {
+    if (found.mm <= file.options.tolerance_mm + check.bound_mm) return;
+    session.diagnostics.add(
+        {Severity::left_out,
+         "gouge",
+         std::string("the ") + what + " cuts " + format_fixed(found.mm, 4) + " mm into the part",
+         {},
+         std::array{found.at.x, found.at.y, found.at.z}});
+  };
+  say(check.report.ball, "ball");
+  say(check.report.shank, "shank");
+  say(check.report.holder, "holder");
 }
 
 std::string html(const RotaryArgs& args, const job::RotaryJobFile& file, const job::RotaryJob& job,
@@ -228,7 +253,11 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
   emit.feed = args.feed;
   auto nc = post::emit_joints(job->cl, *machine, job->joints, *dialect, emit, session.diagnostics);
   if (!nc) return in_file(nc.error());
-  fill_report(*file, *job, *nc, *machine, session);
+  std::optional<job::RotaryCheck> check;
+  if (!session.common.json.empty() || !session.common.html.empty())
+    check = job::check_rotary_job(*file, *job, *machine);
+  if (check) warn_of_gouge(*file, *check, session);
+  fill_report(*file, *job, *nc, *machine, check, session);
   return put_outputs(args, *file, *job, *nc, nc_path, session);
 }
 

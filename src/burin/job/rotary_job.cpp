@@ -196,8 +196,8 @@ Error in(const std::string& file, Error error) {
   return error;
 }
 
-/// Shares of the tolerance: section fit and mesh each leave the design by a tenth and a fifth of it.
-constexpr double kFitShare = 0.1, kMeshShare = 0.2;
+/// Share of the tolerance by which the section's fit may leave the drawing.
+constexpr double kFitShare = 0.1;
 
 }  // namespace
 
@@ -297,6 +297,108 @@ Result<RotaryJob> make_rotary_job(const RotaryJobFile& file, const kinematics::K
   if (!path) return path.error();
   job.joints = std::move(*path);
   return job;
+}
+
+namespace {
+
+/// Faces whose normal leaves the X axis by less are end faces: a ball beside the part cannot finish them.
+constexpr double kEndFaceCosine = 0.999;
+
+std::vector<bool> machined_triangles(const rotary::Part& part) {
+  std::vector<bool> machined;
+  machined.reserve(part.mesh.triangles.size());
+  for (const auto& t : part.mesh.triangles) {
+    const geom::Point3 a = part.mesh.vertices[t[0]], b = part.mesh.vertices[t[1]],
+                       c = part.mesh.vertices[t[2]];
+    const geom::Vec3 n = unit(cross(b - a, c - a));
+    const double x = (a.x + b.x + c.x) / 3;
+    machined.push_back(std::abs(n.x) < kEndFaceCosine && x >= part.x_min && x <= part.x_max);
+  }
+  return machined;
+}
+
+/// Points of the swept section itself, which the mesh only follows within its deflection.
+void add_swept(const rotary::SweptSection& swept, double spacing_mm, std::size_t max_samples,
+               verify::SampledDesign& design) {
+  const double length = swept.stations.back().x;
+  double most_turn = 0, radius = 0;
+  for (std::size_t i = 1; i < swept.stations.size(); ++i)
+    most_turn = std::max(most_turn, std::abs(swept.stations[i].turn - swept.stations[i - 1].turn) /
+                                        (swept.stations[i].x - swept.stations[i - 1].x));
+  const geom::Box2 box = bounds_of(swept.section);
+  radius = std::max({std::hypot(box.lo.x, box.lo.y), std::hypot(box.hi.x, box.hi.y),
+                     std::hypot(box.lo.x, box.hi.y), std::hypot(box.hi.x, box.lo.y)});
+  const double stretch = std::sqrt(1 + most_turn * most_turn * radius * radius);
+  const double area = length * stretch * length_of(swept.section);
+  spacing_mm = std::max(spacing_mm, std::sqrt(area / static_cast<double>(max_samples)));
+  design.spacing_mm = std::max(design.spacing_mm, spacing_mm);
+  const int rows = std::max(1, static_cast<int>(std::ceil(length * stretch / spacing_mm)));
+  for (int k = 0; k <= rows; ++k) {
+    const double x = length * k / rows, turn = swept.turn_at(x);
+    const double c = std::cos(turn), s = std::sin(turn);
+    for (const geom::Segment& segment : swept.section.segments) {
+      const int parts = std::max(1, static_cast<int>(std::ceil(length_of(segment) / spacing_mm)));
+      for (int i = 0; i < parts; ++i) {
+        const geom::Point2 p = point_on(segment, static_cast<double>(i) / parts);
+        design.samples.push_back({{x, p.x * c - p.y * s, p.x * s + p.y * c}, true});
+      }
+    }
+  }
+}
+
+verify::SampledDesign design_samples(const rotary::Part& part, double spacing_mm) {
+  constexpr std::size_t kMaxSamples = 3'000'000;
+  const std::vector<bool> machined = machined_triangles(part);
+  if (!part.swept) return verify::sample_mesh(part.mesh, machined, spacing_mm, kMaxSamples);
+  geom::Mesh ends;
+  ends.vertices = part.mesh.vertices;
+  for (std::size_t t = 0; t < machined.size(); ++t)
+    if (!machined[t]) ends.triangles.push_back(part.mesh.triangles[t]);
+  verify::SampledDesign design =
+      verify::sample_mesh(ends, std::vector<bool>(ends.triangles.size(), false), spacing_mm, kMaxSamples);
+  add_swept(*part.swept, spacing_mm, kMaxSamples, design);
+  return design;
+}
+
+verify::BallEndTool checked_tool(const model::BallTool& tool) {
+  verify::BallEndTool checked{tool.radius, {{tool.shank_radius, 0, tool.shank_length, false}}};
+  double at = tool.shank_length;
+  for (const model::HolderPiece& piece : tool.holder) {
+    checked.cylinders.push_back({piece.radius, at, at + piece.height, true});
+    at += piece.height;
+  }
+  return checked;
+}
+
+/// Which joint moves cut: those of the records that are no rapids. (Approaches and links at feed touch
+/// nothing that the cut does not touch.)
+std::vector<verify::CheckedMove> checked_moves(const kinematics::JointPath& path) {
+  std::vector<verify::CheckedMove> moves;
+  moves.reserve(path.moves.size());
+  for (const kinematics::JointMove& move : path.moves) moves.push_back({move.to, !move.rapid});
+  return moves;
+}
+
+}  // namespace
+
+RotaryCheck check_rotary_moves(const rotary::Part& part, const model::BallTool& tool,
+                               const std::vector<verify::CheckedMove>& moves,
+                               const kinematics::Kinematics& machine, double tolerance_mm) {
+  // Samples so close that what lies between them adds a tenth of the tolerance.
+  const double least = std::min(tool.radius, tool.shank_radius);
+  RotaryCheck check;
+  check.design = design_samples(part, std::sqrt(4 * least * 0.1 * tolerance_mm));
+  verify::MotionCheckOptions options;
+  options.motion_mm = 0.02 * tolerance_mm;
+  check.report = verify::check_motion(check.design, moves, machine, checked_tool(tool), options);
+  check.bound_mm = check.report.bound_mm + (part.swept ? 0 : part.deflection_mm);
+  return check;
+}
+
+RotaryCheck check_rotary_job(const RotaryJobFile& file, const RotaryJob& job,
+                             const kinematics::Kinematics& machine) {
+  return check_rotary_moves(job.part, file.tool, checked_moves(job.joints), machine,
+                            file.options.tolerance_mm);
 }
 
 }  // namespace burin::job

@@ -15,6 +15,7 @@
 #include "burin/kinematics/joint_path.h"
 #include "burin/model/tool.h"
 #include "burin/plan/rotary/rotary.h"
+#include "burin/verify/motion_check.h"
 
 namespace burin::job {
 
@@ -46,6 +47,9 @@ struct RotaryJobFile {
   double spindle_rpm = 0;  ///< 0: no spindle words
 };
 
+/// Share of the tolerance by which the part's mesh may leave the design.
+inline constexpr double kMeshShare = 0.2;
+
 /// Every key checked; errors with file, line, column and what would be accepted.
 Result<RotaryJobFile> read_rotary_job(std::string_view toml, const std::string& file_name);
 
@@ -62,6 +66,19 @@ struct RotaryJob {
   cl::Program cl;
   kinematics::JointPath joints;
 };
+
+/// The joint moves against the part by verify/motion_check, which shares nothing with the planner. End faces
+/// and what lies outside of x_min to x_max must not be cut, but need not be reached.
+struct RotaryCheck {
+  verify::SampledDesign design;
+  verify::MotionCheckReport report;
+  double bound_mm = 0;  ///< of the check, the mesh's deflection included
+};
+RotaryCheck check_rotary_moves(const rotary::Part& part, const model::BallTool& tool,
+                               const std::vector<verify::CheckedMove>& moves,
+                               const kinematics::Kinematics& machine, double tolerance_mm);
+RotaryCheck check_rotary_job(const RotaryJobFile& file, const RotaryJob& job,
+                             const kinematics::Kinematics& machine);
 
 /// The whole of it on a machine with one rotary axis in the table, along X. Error (unsupported): another
 /// machine.

@@ -36,6 +36,7 @@ class Check {
         const kinematics::Kinematics& machine, const BallEndTool& tool, const MotionCheckOptions& options)
       : design_(design), moves_(moves), machine_(machine), tool_(tool), options_(options) {
     for (const DesignSample& s : design.samples) bounds_.add(s.p);
+    reach_ = reach();
     ball_.assign(design.samples.size(), std::numeric_limits<float>::infinity());
     body_.assign(design.samples.size(), 0.0F);
   }
@@ -43,7 +44,7 @@ class Check {
   MotionCheckReport run() {
     std::vector<std::uint32_t> all(design_.samples.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
-    const SampleGrid grid(design_.samples, all, std::max(tool_.radius, 4 * design_.spacing_mm));
+    const SampleGrid grid(design_.samples, all, std::max(0.25 * tool_.radius, 4 * design_.spacing_mm));
     // What stands farther from the ball's way than a small window is looked for again with wider ones, by
     // itself.
     double window = std::min(options_.window_mm, 0.25 * tool_.radius);
@@ -87,6 +88,25 @@ class Check {
     }
   }
 
+  /// How far from the rotary axes things can happen: the part's corners, and what the ball touches beside
+  /// them.
+  double reach() const {
+    double most = 0;
+    for (int i = 0; i < machine_.rotary_count(); ++i) {
+      const model::Axis& axis = machine_.rotary_axis(i);
+      for (int corner = 0; corner < 8; ++corner) {
+        const Point3 p{corner & 1 ? bounds_.hi.x : bounds_.lo.x, corner & 2 ? bounds_.hi.y : bounds_.lo.y,
+                       corner & 4 ? bounds_.hi.z : bounds_.lo.z};
+        const Vec3 v = p - axis.point;
+        const bool table = axis.side == model::AxisSide::table;
+        // A head turns the tool about a point that goes with it.
+        most = std::max(most, table ? norm(v - dot(v, axis.direction) * axis.direction)
+                                    : machine_.machine().pivot_length + bounds_.diagonal());
+      }
+    }
+    return most + 2 * tool_.radius;
+  }
+
   Placed placed(const kinematics::Joints& from, const kinematics::Joints& to, double t) const {
     kinematics::Joints j;
     for (std::size_t i = 0; i < 3; ++i) j.linear[i] = from.linear[i] + t * (to.linear[i] - from.linear[i]);
@@ -102,14 +122,13 @@ class Check {
     double turn = 0, travel = 0;
     for (std::size_t i = 0; i < 2; ++i) turn += std::abs(to.rotary[i] - from.rotary[i]);
     for (std::size_t i = 0; i < 3; ++i) travel = std::hypot(travel, to.linear[i] - from.linear[i]);
-    const double reach = bounds_.diagonal() + machine_.machine().pivot_length + 2 * tool_.radius;
-    const double bend = reach * turn * turn / 8 + travel * turn / 4;
+    const double bend = reach_ * turn * turn / 8 + travel * turn / 4;
     double count = std::ceil(std::sqrt(bend / bend_mm));
     // Cylinders are looked at in places: between them a wall of radius r is missed by h^2 / (8 r).
     double least = std::numeric_limits<double>::infinity();
     for (const ToolCylinder& c : tool_.cylinders) least = std::min(least, c.radius);
     if (bodies && !std::isinf(least))
-      count = std::max(count, std::ceil((travel + reach * turn) / std::sqrt(8 * least * bend_mm)));
+      count = std::max(count, std::ceil((travel + reach_ * turn) / std::sqrt(8 * least * bend_mm)));
     return static_cast<int>(std::clamp(count, 1.0, 1e6));
   }
 
@@ -186,6 +205,7 @@ class Check {
   const BallEndTool& tool_;
   const MotionCheckOptions& options_;
   geom::Box3 bounds_;
+  double reach_ = 0;
   std::vector<float> ball_, body_;
   MotionCheckReport out_;
 };

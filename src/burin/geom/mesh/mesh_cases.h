@@ -82,7 +82,7 @@ inline Mesh box(Point3 lo, Point3 hi) {
 inline Mesh torus(std::uint32_t nu, std::uint32_t nv, double big, double small) {
   Mesh mesh = tube(nu, nv, [&](double u, double v) {
     const double a = 2 * kPi * u, b = 2 * kPi * v, r = big + small * std::cos(a);
-    return Point3{small * std::sin(a), r * std::cos(b), r * std::sin(b)};
+    return Point3{-small * std::sin(a), r * std::cos(b), r * std::sin(b)};
   });
   for (auto& t : mesh.triangles) {
     for (auto& i : t) i %= nu * nv;  // the last ring is the first

@@ -138,7 +138,20 @@ class Planner {
     const Point3 to = back ? parts_[i].end : parts_[i].start;
     const Point2 to_tw = back ? parts_[i].to : parts_[i].from;
     if (distance(from, to) <= path_mm_) return;
-    Track track = build_track(sheet_, at_, to_tw, path_mm_);
+    Track track;
+    if (!(at_.x == to_tw.x && at_.y == to_tw.y)) track = build_track(sheet_, at_, to_tw, path_mm_);
+    // A path along a crease may hold the ball on the other side of it than the link does.
+    const auto turn = [&](Point2 tw, Point3 a, Point3 b) {
+      const Contact c = sheet_.contact(tw.x, tw.y);
+      return turn_about(c.s, sheet_.radius(), a, b, c.st, sheet_.uv(tw.x, tw.y));
+    };
+    if (track.empty()) {
+      track.push_back(turn(at_, from, to));
+    } else {
+      const Point3 starts = track.front().tip.start(), ends = track.back().tip.end();
+      if (distance(ends, to) > path_mm_) track.push_back(turn(to_tw, ends, to));
+      if (distance(from, starts) > path_mm_) track.insert(track.begin(), turn(at_, from, starts));
+    }
     for (TrackPiece& p : track) {
       p.tip.nodes.front().p = chain.back().track.tip.nodes.back().p;
       chain.push_back({std::move(p), MotionKind::link, &sheet_, surface_, -1, false, 0});

@@ -78,14 +78,16 @@ void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& r) {
       if (before < i) {
         // A path that ends at the border beyond the edge is followed by the border itself.
         const std::size_t border = r.passes.size() - 1;
-        std::vector<const NearestCentre*> after{&centres[i].centres};
-        if (border != i) after.push_back(&centres[border].centres);
+        std::vector<const NearestCentre*> after{&centres[i].centres(edge)};
+        if (border != i) after.push_back(&centres[border].centres(edge));
         const EdgeRidge ridge = ridge_on_edge(sheet, edge, r.passes[before].w_at(edge),
-                                              r.passes[i].w_at(edge), centres[before].centres, after);
+                                              r.passes[i].w_at(edge), centres[before].centres(edge), after);
         keep(r.passes[before], ridge.foot);
         keep(r.passes[ridge.lowest == 0 ? i : border], ridge.feet[ridge.lowest]);
         PairFigures& f = r.pairs[i - 1];
-        if (f.scallop_min != kNoOverlap && ridge.height < kNoOverlap)
+        // Next to a valley no ball gets everywhere.
+        const bool valley = r.passes[before].valley || r.passes[i].valley;
+        if (!valley && f.scallop_min != kNoOverlap && ridge.height < kNoOverlap)
           f.scallop_max = std::max(f.scallop_max, ridge.height);
       }
       before = i;

@@ -142,13 +142,14 @@ class SurfacePlanner {
     const bool over_edges = options_.method == Method::iso_scallop && region.whole();
     // What stands on an edge between two paths is at most half a step off; steps are longer in hollows.
     const double over = std::sqrt(8 * radius_ * options_.scallop);
-    sheets_.emplace_back(over_edges ? continued(surface, along, over) : surface, along, sign, radius_,
-                         options_.stock, surface.domain(along));
+    const geom::NurbsSurface whole = over_edges ? continued(surface, along, over) : surface;
+    sheets_.emplace_back(whole, along, sign, radius_, options_.stock, surface.domain(along));
     const Sheet& sheet = sheets_.back();
     const PassTask task = task_of(sheet, region);
     if (!(task.t.length() > 0 && task.w.length() > 0)) return out;
-    Result<Passes> passes =
-        options_.method == Method::iso_parametric ? iso_parametric(sheet, task) : iso_scallop(sheet, task);
+    Result<Passes> passes = options_.method == Method::iso_parametric
+                                ? iso_parametric(sheet, task)
+                                : iso_scallop_between_creases(whole, sheet, task);
     if (!passes) return passes.error();
     out.pairs = passes->pairs;
     out.paths = passes->passes.size();

@@ -42,13 +42,14 @@ class Sheet {
   geom::Direction along() const { return along_; }
   geom::Interval t_range() const { return t_; }
   geom::Interval t_inner() const { return inner_; }
+  double sign() const { return along_ == geom::Direction::u ? sign_ : -sign_; }
   geom::Interval w_range() const { return w_; }
   double radius() const { return radius_; }
   double stock() const { return stock_; }
   /// Inner knots in t and in w.
   const std::vector<geom::Knot>& t_knots() const { return t_knots_; }
   const std::vector<geom::Knot>& w_knots() const { return w_knots_; }
-  /// Knots of w where only the place is continuous (creases run along the paths).
+  /// Places of w where the normal jumps somewhere (creases run along the paths).
   const std::vector<double>& w_creases() const { return w_creases_; }
   /// The same in t: paths cross them.
   const std::vector<double>& t_creases() const { return t_creases_; }
@@ -71,6 +72,7 @@ class Sheet {
  private:
   geom::SurfaceDerivatives at(double t, double w, geom::Side side_t, geom::Side side_w) const;
   bool normal_of(const geom::SurfaceDerivatives& d, Vec3& n) const;
+  bool creased(double value, bool in_t) const;
   geom::Point2 pulled_inside(double t, double w, double fraction) const;
 
   geom::Direction along_;

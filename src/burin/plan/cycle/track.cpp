@@ -137,18 +137,9 @@ class Builder {
 
   // The ball turns about the point of a crease.
   TrackPiece swing(const Node& a, const Node& b) const {
-    Vec3 axis = cross(a.contact.n, b.contact.n);
-    const double sine = norm(axis);
-    constexpr double kKnifeEdge = 1e-9;
-    if (sine < kKnifeEdge) axis = cross(a.contact.n, a.tip.d1);
-    const double sweep = std::atan2(sine, dot(a.contact.n, b.contact.n));
-    const Point3 centre{a.contact.s.x, a.contact.s.y, a.contact.s.z - sheet_.radius()};
-    TrackPiece p;
-    p.swing = true;
+    TrackPiece p =
+        turn_about(a.contact.s, sheet_.radius(), a.tip.p, b.tip.p, cross(a.contact.n, a.tip.d1), a.uv.p);
     p.s0 = p.s1 = a.tip.t;
-    p.tip = geom::arc(a.tip.p, centre, unit(axis), sweep, 0);
-    p.tip.nodes.back().p = b.tip.p;
-    for (const QuinticNode& n : p.tip.nodes) p.uv.nodes.push_back({n.t, a.uv.p, {}, {}});
     return p;
   }
 
@@ -222,6 +213,21 @@ std::vector<Mark> sorted(std::vector<Mark> marks, double s0, double s1) {
 }
 
 }  // namespace
+
+TrackPiece turn_about(Point3 touch, double radius, Point3 from, Point3 to, Vec3 across, Point3 uv) {
+  const Point3 centre{touch.x, touch.y, touch.z - radius};
+  const Vec3 a = from - centre, b = to - centre;
+  Vec3 axis = cross(a, b);
+  const double sine = norm(axis);
+  constexpr double kKnifeEdge = 1e-9;
+  if (sine < kKnifeEdge * norm(a) * norm(b)) axis = across;
+  TrackPiece p;
+  p.swing = true;
+  p.tip = geom::arc(from, centre, unit(axis), std::atan2(sine, dot(a, b)), 0);
+  p.tip.nodes.back().p = to;
+  for (const QuinticNode& n : p.tip.nodes) p.uv.nodes.push_back({n.t, uv, {}, {}});
+  return p;
+}
 
 Track build_track(const Sheet& sheet, const Graph& graph, double path_mm) {
   std::vector<Mark> marks;

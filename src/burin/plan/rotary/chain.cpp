@@ -11,7 +11,8 @@ namespace {
 // A box narrower than this (radians) is a point.
 constexpr double kThin = 1e-9;
 constexpr int kMaxIterations = 80;
-// Complementarity at which the chain is at rest, relative to the stiffness: angles are then right to about 1e-7.
+// Complementarity at which the chain is at rest, relative to the stiffness: angles are then right to about
+// 1e-7.
 constexpr double kRest = 1e-13;
 
 /// The state of the interior-point iteration. Slacks are kept on their own so that they never round to 0.

@@ -30,11 +30,6 @@ double CenterLine::distance2(Point3 q, std::size_t segment) const {
   return dot(d, d);
 }
 
-bool CenterLine::beyond_end(Point3 q, std::size_t segment) const {
-  const Point3 a = points_[segment], b = points_[segment + 1];
-  return (segment == 0 && dot(q - a, b - a) < 0) || (segment + 1 == segments() && dot(q - b, b - a) > 0);
-}
-
 std::size_t CenterLine::closest(Point3 q, std::size_t hint) const {
   const std::size_t n = segments();
   std::size_t best = std::min(hint, n - 1);
@@ -57,29 +52,60 @@ std::size_t CenterLine::closest(Point3 q, std::size_t hint) const {
   return best;
 }
 
-double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) const {
-  double t = 0;
-  // The way is as good as straight near the segment that is nearest to where the ray enters: twice is enough.
-  for (int round = 0; round < 3; ++round) {
+Point3 CenterLine::place(Point3 q, std::size_t segment) const {
+  const Point3 a = points_[segment], b = points_[(segment + 1) % points_.size()];
+  const double length2 = dot(b - a, b - a);
+  return length2 > 0 ? lerp(a, b, std::clamp(dot(q - a, b - a) / length2, 0.0, 1.0)) : a;
+}
+
+namespace {
+
+/// Where the ray from q enters the ball.
+double into_ball(Point3 q, Vec3 n, Point3 center, double radius) {
+  const Vec3 d = q - center;
+  const double along = dot(d, n), c = dot(d, d) - radius * radius;
+  if (c <= 0) return 0;
+  const double root = along * along - c;
+  return root < 0 || along >= 0 ? kNever : c / (-along + std::sqrt(root));
+}
+
+/// closest(p) is the segment nearest to p, place(p, segment) the centre on it.
+template <class Closest, class Place>
+double first_entry(Point3 q, Vec3 n, double radius, const Closest& closest, const Place& place) {
+  // The ball that belongs to the contact (q, n) would stand here: the nearest one faces it. (The centre
+  // nearest to q says nothing at a corner of the part, about which the ball rolls at one distance.)
+  const Point3 facing = q + radius * n;
+  double t = into_ball(q, n, place(facing, closest(facing)), radius);
+  // Of all balls the one that is entered first has its centre nearest to the place where it is entered.
+  constexpr int kRounds = 6;
+  for (int round = 0; round < kRounds && t > 0 && t < kNever; ++round) {
     const Point3 at = q + t * n;
-    const std::size_t segment = closest(at, hint);
-    if (round > 0 && segment == hint) break;
-    hint = segment;
-    const Point3 a = points_[segment], b = points_[(segment + 1) % points_.size()];
-    Vec3 h = unit(b - a), d = q - a;
-    if (!closed_ && beyond_end(at, segment)) {  // the ball that stands at the end
-      d = q - (segment == 0 ? a : b);
-      h = {};
-    }
-    const Vec3 n_across = n - dot(n, h) * h, d_across = d - dot(d, h) * h;
-    const double aa = dot(n_across, n_across), ab = dot(d_across, n_across),
-                 c = dot(d_across, d_across) - radius * radius;
-    if (c <= 0) return 0;
-    const double root = ab * ab - aa * c;
-    if (root < 0 || ab >= 0) return kNever;
-    t = c / (-ab + std::sqrt(root));
+    const double sooner = into_ball(q, n, place(at, closest(at)), radius);
+    if (!(sooner < t)) break;
+    const bool done = sooner > 0.9999 * t;
+    t = sooner;
+    if (done) break;
   }
   return t;
+}
+
+}  // namespace
+
+double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) const {
+  return first_entry(
+      q, n, radius, [&](Point3 p) { return hint = closest(p, hint); },
+      [&](Point3 p, std::size_t segment) { return place(p, segment); });
+}
+
+double entry(const SegmentRuns& way, Point3 q, Vec3 n, double radius, std::size_t& hint) {
+  double d2 = 0;
+  return first_entry(
+      q, n, radius, [&](Point3 p) { return hint = way.nearest(p, hint, d2); },
+      [&](Point3 p, std::size_t segment) {
+        const Point3 a = way[segment].a, b = way[segment].b;
+        const double length2 = dot(b - a, b - a);
+        return length2 > 0 ? lerp(a, b, std::clamp(dot(p - a, b - a) / length2, 0.0, 1.0)) : a;
+      });
 }
 
 double ring_cusp(const RingAt& ring, std::size_t count, double a, double b, double radius) {

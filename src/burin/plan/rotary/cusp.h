@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "burin/plan/rotary/part.h"
+#include "burin/plan/rotary/segment_runs.h"
 
 namespace burin::rotary::detail {
 
@@ -24,12 +25,15 @@ class CenterLine {
 
  private:
   double distance2(geom::Point3 q, std::size_t segment) const;
-  bool beyond_end(geom::Point3 q, std::size_t segment) const;
+  geom::Point3 place(geom::Point3 q, std::size_t segment) const;
   std::size_t closest(geom::Point3 q, std::size_t hint) const;
 
   std::vector<geom::Point3> points_;
   bool closed_;
 };
+
+/// As CenterLine::entry, over all segments.
+double entry(const SegmentRuns& way, geom::Point3 q, geom::Vec3 n, double radius, std::size_t& hint);
 
 /// Contact number i of the ring at x, wherever it is taken from.
 using RingAt = std::function<Contact(std::size_t i, double x)>;

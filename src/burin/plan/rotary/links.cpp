@@ -173,8 +173,7 @@ bool Linker::link(const AxisPose& to, std::size_t path) {
     poses.push_back(to);
     bool clear = true;
     for (std::size_t i = 1; clear && i < poses.size(); ++i) {
-      const MoveCheck c =
-          check_move(poses[i - 1], poses[i], shared_.reach, shared_.mesh, shared_.tool, o);
+      const MoveCheck c = check_move(poses[i - 1], poses[i], shared_.body, shared_.mesh, shared_.tool, o);
       clear = c.clear;
       if (clear) plan_.quality.gouge_max_mm = std::max(plan_.quality.gouge_max_mm, c.ball_depth);
     }
@@ -205,7 +204,8 @@ bool Linker::approach(const Run& run, std::size_t path) {
   if (started_) {
     std::vector<AxisPose> poses{at_};
     const double turn = top.theta - at_.theta;
-    const auto pieces = static_cast<int>(std::min(1e6, std::max(1.0, std::ceil(std::abs(turn) / kRapidTurn))));
+    const auto pieces =
+        static_cast<int>(std::min(1e6, std::max(1.0, std::ceil(std::abs(turn) / kRapidTurn))));
     const AxisPose from = at_;
     for (int i = 1; i < pieces; ++i) poses.push_back(between(from, top, static_cast<double>(i) / pieces));
     poses.push_back(top);
@@ -214,7 +214,8 @@ bool Linker::approach(const Run& run, std::size_t path) {
   started_ = true;
   std::vector<AxisPose> poses{top};
   // Fast in the air: above the place itself when nothing is said about the stock.
-  const double fast = shared_.options.stock_radius > 0 ? 0 : height(top) - height(run.poses[k]) - shared_.options.safety_mm;
+  const double fast =
+      shared_.options.stock_radius > 0 ? 0 : height(top) - height(run.poses[k]) - shared_.options.safety_mm;
   if (fast > 0) poses.push_back(lifted(run.poses[k], shared_.options.safety_mm));
   for (std::size_t i = k + 1; i-- > 0;) poses.push_back(run.poses[i]);
   leg(LegKind::approach, std::move(poses), path);
@@ -228,7 +229,10 @@ void Linker::add_run(Run run, std::size_t path) {
     // The way back leads over the cut that was made, the one before is behind a link.
     if (!approach(run, path)) {
       ++plan_.counts.broken;
-      for (const std::size_t p : run.points) plan_.points[p].place.state = State::unreachable;
+      // A point where two runs meet may have been cut by the one before.
+      const bool shared = !plan_.legs.empty() && !plan_.legs.back().points.empty();
+      for (const std::size_t p : run.points)
+        if (!shared || plan_.legs.back().points.back() != p) plan_.points[p].place.state = State::unreachable;
       return;
     }
     behind_.clear();
@@ -249,7 +253,8 @@ bool Linker::better_backwards(const PathPlan& path) const {
   Run backward = forward;
   std::reverse(backward.poses.begin(), backward.poses.end());
   const auto turn = [&](Run& run) {
-    return place(run) ? std::abs(run.poses.front().theta - at_.theta) : std::numeric_limits<double>::infinity();
+    return place(run) ? std::abs(run.poses.front().theta - at_.theta)
+                      : std::numeric_limits<double>::infinity();
   };
   return turn(backward) + kPi < turn(forward);
 }

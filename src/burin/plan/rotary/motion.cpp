@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "burin/geom/vec.h"
 
@@ -25,11 +26,14 @@ Point3 turned(Point3 p, double theta) {
 struct Way {
   Point3 from, to;  ///< machine frame
   double theta_from, theta_to;
-  double radius;   ///< largest distance from the X axis
-  double run_yz;   ///< length of the linear way in y', z'
+  double radius;  ///< largest distance from the X axis
+  double run_yz;  ///< length of the linear way in y', z'
 
   Way(const AxisPose& a, const AxisPose& b)
-      : from(turned(a.center, a.theta)), to(turned(b.center, b.theta)), theta_from(a.theta), theta_to(b.theta) {
+      : from(turned(a.center, a.theta)),
+        to(turned(b.center, b.theta)),
+        theta_from(a.theta),
+        theta_to(b.theta) {
     radius = std::max(std::hypot(from.y, from.z), std::hypot(to.y, to.z));
     run_yz = std::hypot(to.y - from.y, to.z - from.z);
   }
@@ -69,8 +73,8 @@ class BallCheck {
     return {t, c, hit ? hit->distance : within};
   }
 
-  /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from the
-  /// chord; the bend comes on top.
+  /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from
+  /// the chord; the bend comes on top.
   double depth_bound(const Stop& a, const Stop& b, double bend) const {
     const double h2 = dot(b.center - a.center, b.center - a.center);
     const double da2 = a.distance * a.distance, db2 = b.distance * b.distance;
@@ -110,61 +114,94 @@ class BallCheck {
   double radius_, allowed_, at_ = 0, depth_ = -1e300;
 };
 
-/// Whether the whole of [lo, hi] (any number of turns) is in the set.
-bool holds(const AngleSet& set, double lo, double hi) {
-  for (const AngleInterval& i : set) {
-    if (i.hi - i.lo >= 2 * geom::kPi) return true;
-    const double turns = std::ceil((lo - i.hi) / (2 * geom::kPi)) * 2 * geom::kPi;
-    if (i.lo + turns <= lo && hi <= i.hi + turns) return true;
-  }
-  return false;
-}
+/// One cylinder of the tool: the shank or a piece of the holder.
+struct Piece {
+  double radius, low, high;  ///< heights above the ball's centre
+};
 
-class BodyCheck {
+/// A cylinder along the way. Seen from the tool, a point of the part moves by at most h over a stretch, along
+/// a line but for a bend. One that is in the cylinder at some time is within its heights grown by h at both
+/// ends of the stretch; with distances da and db from the axis line there it comes no nearer to it than
+/// sqrt((1-s) da^2 + s db^2 - s (1-s) h^2) - bend.
+class PieceCheck {
  public:
-  BodyCheck(const Way& way, const ReachIndex& reach, double tolerance)
-      : way_(way), reach_(reach), give_(0.75 * tolerance), finest_(tolerance / 4) {}
+  PieceCheck(const Way& way, const BodyIndex& body, const Piece& piece, double tolerance)
+      : way_(way), body_(body), piece_(piece), tolerance_(tolerance) {
+    // Sinking in along the axis is allowed for, too, by half.
+    piece_.low += tolerance / 2;
+    piece_.high -= tolerance / 2;
+    const double turn = std::abs(way.theta_to - way.theta_from);
+    // No point of the part stands higher than its radius in the machine.
+    const double lowest = std::min(way.from.z, way.to.z);
+    room_above_ = body.radius() - lowest;
+    const double far = std::hypot(std::max(0.0, room_above_), piece.radius);
+    speed_ = norm(way.center(1) - way.center(0)) + 4 * way.bend(1) + turn * far;
+    turn_ = turn;
+    bend_ = body.radius() * turn * turn / 8;
+  }
 
-  bool run() { return clear(0, 1, 0); }
+  bool run() { return room_above_ < piece_.low || clear(0, 1, 0); }
   double at() const { return at_; }
 
  private:
-  /// The tool at any time of the stretch is the tool about the middle centre, moved by at most `shift`:
-  /// grown by that (and shrunk by what it may sink in) it must be free over the whole range of angles. The
-  /// shank's lower end has to grow, too: the centre is moved along the axis. (Shrunk, it need not: what the
-  /// end leaves out is less deep than `shift`, and the ball is there.)
   bool clear(double from, double to, int level) {
-    const double middle = (from + to) / 2, half = (to - from) / 2;
-    const Point3 c = way_.center(middle);
-    const double shift = std::max(norm(way_.center(from) - c), norm(way_.center(to) - c)) + way_.bend(half);
-    const double theta = way_.theta(middle);
-    const double turn = std::abs(way_.theta(to) - way_.theta(from)) / 2;
-    const double grow = shift - give_;
-    const Vec3 axis{0, std::sin(theta), std::cos(theta)};
-    ReachOptions options;
-    options.grow_mm = grow + std::abs(grow) * turn;
-    const AngleSet set = reach_.reachable(c - std::max(0.0, grow) * axis, options);
-    if (holds(set, theta - turn, theta + turn)) return true;
-    // A collision in the middle is not looked for in ever smaller steps from the start.
-    options.grow_mm = -give_;
-    if (level < kEarly && grow > 0 && !contains(reach_.reachable(c, options), theta)) {
-      at_ = middle;
-      return false;
+    const double dt = std::ldexp(1, -level);
+    // A point within reach at one time is as far as that and its own motion at the others.
+    if (turn_ * dt < 0.5) {
+      const double h = dt * speed_ / (1 - turn_ * dt), bend = std::ldexp(bend_, -2 * level);
+      if (h < kLongest * piece_.radius && stretch(from, to, h, bend)) return true;
+      if (level >= kMaxDepth || h < kShortest * tolerance_) {
+        at_ = from;
+        return false;
+      }
     }
-    if (level >= kMaxDepth || (shift <= finest_ && turn <= kFinestTurn)) {
-      at_ = middle;
-      return false;
-    }
+    const double middle = (from + to) / 2;
     return clear(from, middle, level + 1) && clear(middle, to, level + 1);
   }
 
-  // A turn about the centre moves the holder sideways: over this one by 2.5 um at 100 mm.
-  static constexpr double kFinestTurn = 2.5e-5;
-  static constexpr int kEarly = 6;
+  bool stretch(double from, double to, double h, double bend) {
+    // More than this is of no use: then the whole stretch is proven by one end.
+    const double within = piece_.radius + h + bend;
+    const double da = distance(from, h, within), allowed = piece_.radius - tolerance_ + bend;
+    if (da >= within) return true;
+    if (da < allowed) return false;
+    const double db = distance(to, h, within);
+    if (db >= within) return true;
+    if (db < allowed) return false;
+    const double a2 = da * da, b2 = db * db, h2 = h * h;
+    const double s = std::clamp(0.5 - (b2 - a2) / (2 * h2), 0.0, 1.0);
+    const double least = h > 0 ? (1 - s) * a2 + s * b2 - s * (1 - s) * h2 : std::min(a2, b2);
+    return least > 0 && std::sqrt(least) >= allowed;
+  }
+  /// The end of one stretch is the start of the next.
+  double distance(double t, double h, double within) {
+    if (t == asked_t_ && h == asked_h_) return answer_;
+    asked_t_ = t;
+    asked_h_ = h;
+    return answer_ = body_.to_axis(way_.center(t), way_.theta(t), piece_.low - h, piece_.high + h, within);
+  }
+
+  // Where a stretch is so short (part of the tolerance) and not clear, the tool gouges.
+  static constexpr double kShortest = 1e-3;
+  // Motions above some radii are never proven in one.
+  static constexpr double kLongest = 8;
   const Way& way_;
-  const ReachIndex& reach_;
-  double give_, finest_, at_ = 0;
+  const BodyIndex& body_;
+  Piece piece_;
+  double tolerance_, room_above_ = 0, speed_ = 0, turn_ = 0, bend_ = 0, at_ = 0;
+  double asked_t_ = -1, asked_h_ = -1, answer_ = 0;
 };
+
+std::vector<Piece> pieces_of(const model::BallTool& tool) {
+  // Above the shank the holder begins; without one the shank has no end.
+  std::vector<Piece> out{{tool.shank_radius, 0, 1e9}};
+  double from = tool.shank_length;
+  for (const model::HolderPiece& piece : tool.holder) {
+    out.push_back({piece.radius, from, from + piece.height});
+    from += piece.height;
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -177,7 +214,7 @@ Point3 tip_of(const AxisPose& pose, double radius) {
   return pose.center - radius * Vec3{0, std::sin(pose.theta), std::cos(pose.theta)};
 }
 
-MoveCheck check_move(const AxisPose& from, const AxisPose& to, const ReachIndex& reach,
+MoveCheck check_move(const AxisPose& from, const AxisPose& to, const BodyIndex& body,
                      const geom::MeshIndex& part, const model::BallTool& tool, const MotionOptions& options) {
   const Way way(from, to);
   MoveCheck out;
@@ -188,9 +225,13 @@ MoveCheck check_move(const AxisPose& from, const AxisPose& to, const ReachIndex&
     return out;
   }
   out.ball_depth = ball.depth();
-  BodyCheck body(way, reach, options.tolerance_mm);
-  out.clear = body.run();
-  if (!out.clear) out.at = body.at();
+  for (const Piece& piece : pieces_of(tool)) {
+    PieceCheck check(way, body, piece, options.tolerance_mm);
+    if (check.run()) continue;
+    out.at = check.at();
+    return out;
+  }
+  out.clear = true;
   return out;
 }
 

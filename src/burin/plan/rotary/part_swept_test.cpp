@@ -53,7 +53,8 @@ TEST(MakeSwept, MeshIsClosedAndHoldsItsVolume) {
     double volume = 0;
     for (const auto& t : part->mesh.triangles) {
       for (int k = 0; k < 3; ++k) ++edges[{t[std::size_t(k)], t[std::size_t((k + 1) % 3)]}];
-      const Point3 o{}, a = part->mesh.vertices[t[0]], b = part->mesh.vertices[t[1]], d = part->mesh.vertices[t[2]];
+      const Point3 o{}, a = part->mesh.vertices[t[0]], b = part->mesh.vertices[t[1]],
+                        d = part->mesh.vertices[t[2]];
       volume += dot(a - o, cross(b - o, d - o)) / 6;
     }
     for (const auto& [edge, count] : edges) {
@@ -89,12 +90,14 @@ TEST(MakeSwept, MeshLeavesTheSurfaceByAtMostTheDeflection) {
     worst = 0;
     for (int k = 0; k < 2000; ++k) {
       const auto& t = part->mesh.triangles[std::size_t(unit_(random) * double(part->mesh.triangles.size()))];
-      const Point3 a = part->mesh.vertices[t[0]], b = part->mesh.vertices[t[1]], d = part->mesh.vertices[t[2]];
+      const Point3 a = part->mesh.vertices[t[0]], b = part->mesh.vertices[t[1]],
+                   d = part->mesh.vertices[t[2]];
       const double f = unit_(random), g = unit_(random);
       const Point3 p = a + f * (1 - g) * (b - a) + g * (d - a);
       if (p.x <= 1e-9 || p.x >= part->x_max - 1e-9) continue;  // caps
       const double back = -c.swept.turn_at(p.x);
-      const Point2 q{p.y * std::cos(back) - p.z * std::sin(back), p.y * std::sin(back) + p.z * std::cos(back)};
+      const Point2 q{p.y * std::cos(back) - p.z * std::sin(back),
+                     p.y * std::sin(back) + p.z * std::cos(back)};
       worst = std::max(worst, distance_to(c.swept.section, q));
     }
     // In the plane of the section the distance may be larger than in space, by the slope of the surface.
@@ -111,7 +114,8 @@ TEST(MakeSwept, CornerNormalsAreThoseOfTheSurface) {
     double worst = 0;
     for (std::size_t i = 0; i < part->mesh.triangles.size(); i += 7) {
       const auto& t = part->mesh.triangles[i];
-      const Point3 a = part->mesh.vertices[t[0]], b = part->mesh.vertices[t[1]], d = part->mesh.vertices[t[2]];
+      const Point3 a = part->mesh.vertices[t[0]], b = part->mesh.vertices[t[1]],
+                   d = part->mesh.vertices[t[2]];
       const Vec3 face = unit(cross(b - a, d - a));
       for (const Vec3 n : part->corner_normals[i]) {
         EXPECT_NEAR(norm(n), 1, 1e-12);
@@ -146,7 +150,8 @@ TEST(MakeSwept, RefusesWhatIsNoPart) {
       message(cases::swept(cases::polygon({{5, 5}, {-5, -5.5}, {-5, 5}, {5, -5}, {9, 0}}), 10, 0));
   EXPECT_NE(crossing.find("crosses or touches itself at"), std::string::npos) << crossing;
   // A spike out and back along itself.
-  EXPECT_NE(message(cases::swept(cases::polygon({{5, 5}, {0, 5}, {0, 8}, {0, 5}, {-5, 5}, {-5, -5}, {5, -5}}), 10, 0))
+  EXPECT_NE(message(cases::swept(cases::polygon({{5, 5}, {0, 5}, {0, 8}, {0, 5}, {-5, 5}, {-5, -5}, {5, -5}}),
+                                 10, 0))
                 .find("crosses or touches"),
             std::string::npos);
   EXPECT_NE(message(cases::swept(cases::circle(5, {9, 0}), 10, 0)).find("axis"), std::string::npos);
@@ -161,7 +166,8 @@ TEST(MakeSwept, RefusesWhatIsNoPart) {
   EXPECT_NE(message({cases::circle(NAN), {{0, 0}, {5, 0}}}).find("not numbers"), std::string::npos);
   PartOptions few;
   few.max_triangles = 1000;
-  EXPECT_NE(message(cases::swept(cases::cutter(8, 20, 13, 1.5), 50, kPi), few).find("triangles"), std::string::npos);
+  EXPECT_NE(message(cases::swept(cases::cutter(8, 20, 13, 1.5), 50, kPi), few).find("triangles"),
+            std::string::npos);
   EXPECT_NE(message(cases::swept(cases::circle(5), 1e-3, 1e6)).find("triangles"), std::string::npos);
 }
 
@@ -173,7 +179,8 @@ TEST(Cap, TrianglesFillRandomPolygonsOnce) {
     const int n = 3 + int(random() % 300);
     for (int i = 0; i < n; ++i) p.push_back(cases::polar(radius(random), 2 * kPi * i / n));
     double polygon = 0, sum = 0;
-    for (int i = 0; i < n; ++i) polygon += 0.5 * cross(p[std::size_t(i)] - Point2{}, p[std::size_t((i + 1) % n)] - Point2{});
+    for (int i = 0; i < n; ++i)
+      polygon += 0.5 * cross(p[std::size_t(i)] - Point2{}, p[std::size_t((i + 1) % n)] - Point2{});
     const auto triangles = detail::triangulate(p);
     ASSERT_EQ(triangles.size(), p.size() - 2);
     for (const auto& t : triangles) {

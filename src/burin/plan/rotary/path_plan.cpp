@@ -159,8 +159,7 @@ class PathPlanner {
     if (ssi > tolerance) return false;
     MotionOptions o;
     o.tolerance_mm = o.ball_mm = tolerance;
-    const MoveCheck check =
-        check_move(a.pose(), b.pose(), shared_.reach, shared_.mesh, shared_.tool, o);
+    const MoveCheck check = check_move(a.pose(), b.pose(), shared_.body, shared_.mesh, shared_.tool, o);
     if (!check.clear) return false;
     out_.ssi_mm = std::max(out_.ssi_mm, ssi);
     out_.gouge_mm = std::max(out_.gouge_mm, check.ball_depth);
@@ -195,8 +194,8 @@ class PathPlanner {
       if (a + 1 < nodes_.size()) nodes_[a + 1].cut = false;
       const std::size_t window = std::max<std::size_t>(2, kWindow >> round);
       const std::size_t lo = a > window ? a - window : 0, hi = std::min(nodes_.size(), a + window + 1);
-      std::fill(free_.begin() + static_cast<std::ptrdiff_t>(lo), free_.begin() + static_cast<std::ptrdiff_t>(hi),
-                char{1});
+      std::fill(free_.begin() + static_cast<std::ptrdiff_t>(lo),
+                free_.begin() + static_cast<std::ptrdiff_t>(hi), char{1});
     }
     return true;
   }
@@ -228,6 +227,10 @@ class PathPlanner {
 void find_reach(const Shared& shared, Node& node) {
   const Point3 c = node.place.center;
   node.initial = std::atan2(c.y, c.z);
+  // Moves are proven, a place alone is not: where the ball itself is in the part, no axis helps.
+  const bool sunk = shared.options.tsi == Tsi::surface &&
+                    shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
+  if (sunk) node.place.state = State::unreachable;
   if (node.place.state == State::unreachable) {
     node.initial_interferes = true;
     return;

@@ -22,6 +22,7 @@ struct Shared {
   const model::BallTool& tool;
   const RotaryOptions& options;
   const geom::MeshIndex& mesh;
+  const BodyIndex& body;
   const ReachIndex& reach;
   const ReachIndex& lift;
   const SectionAxis* section = nullptr;  ///< with Tai::section

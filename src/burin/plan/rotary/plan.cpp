@@ -27,12 +27,14 @@ Result<void> check(const Part& part, const BallTool& tool, const RotaryOptions& 
     return error(ErrorCode::geometry, "the part has no triangles (a closed mesh)");
   if (!(o.tolerance_mm > 0) || !std::isfinite(o.tolerance_mm))
     return error(ErrorCode::usage, "tolerance " + format_shortest(o.tolerance_mm) + " mm (above 0)");
-  if (!(o.safety_mm > 0)) return error(ErrorCode::usage, "safety " + format_shortest(o.safety_mm) + " mm (above 0)");
+  if (!(o.safety_mm > 0))
+    return error(ErrorCode::usage, "safety " + format_shortest(o.safety_mm) + " mm (above 0)");
   if (!(o.clearance >= 0) || !(o.lean >= 0) || o.lean > geom::kPi / 2)
     return error(ErrorCode::usage, "clearance or lean angle (0 or more, lean up to 90 degrees)");
   if (!(o.theta_max > o.theta_min))
     return error(ErrorCode::usage, "limits of the rotary axis (the upper above the lower)");
-  if (!(o.feed_mm_min > 0)) return error(ErrorCode::usage, "feed " + format_shortest(o.feed_mm_min) + " (above 0)");
+  if (!(o.feed_mm_min > 0))
+    return error(ErrorCode::usage, "feed " + format_shortest(o.feed_mm_min) + " (above 0)");
   if (tool.radius >= part.radius_max)
     return error(ErrorCode::geometry, "the ball's radius " + format_shortest(tool.radius) +
                                           " mm is not smaller than the part's " +
@@ -76,14 +78,15 @@ class Planner {
     auto paths = make_paths(part_, pattern, diagnostics_);
     if (!paths) return paths.error();
     const geom::MeshIndex mesh(part_.mesh);
+    const BodyIndex body(part_.mesh);
     const ReachIndex reach(part_.mesh, tool_);
-    const double far = 4 * (std::max(part_.radius_max, options_.stock_radius) + options_.safety_mm) +
-                       tool_.shank_length;
+    const double far =
+        4 * (std::max(part_.radius_max, options_.stock_radius) + options_.safety_mm) + tool_.shank_length;
     const ReachIndex lift(part_.mesh, lifting(tool_, far));
     std::unique_ptr<SectionAxis> section;
     if (options_.tai == Tai::section)
       section = std::make_unique<SectionAxis>(part_.mesh, part_.corner_normals, tool_.radius);
-    const Shared shared{part_, tool_, options_, mesh, reach, lift, section.get()};
+    const Shared shared{part_, tool_, options_, mesh, body, reach, lift, section.get()};
     follow(shared, paths->paths);
     plan_.quality.scallop_mm = paths->scallop_max;
     plan_.quality.side_step_min_mm = paths->side_step_min;
@@ -161,12 +164,12 @@ class Planner {
       places += (shown++ > 0 ? "; " : "") + format_fixed(at.x, 3) + ", " + format_fixed(at.y, 3) + ", " +
                 format_fixed(at.z, 3);
     }
-    diagnostics_.left_out("unreachable",
-                          std::to_string(plan_.counts.unreachable) + " of " +
-                              std::to_string(plan_.counts.contact_points) +
-                              " contact points are not reached by any angle of the tool axis and are not cut; "
-                              "up to " +
-                              format_fixed(worst, 3) + " mm is left there (first at " + places + ")");
+    diagnostics_.left_out(
+        "unreachable", std::to_string(plan_.counts.unreachable) + " of " +
+                           std::to_string(plan_.counts.contact_points) +
+                           " contact points are not reached by any angle of the tool axis and are not cut; "
+                           "up to " +
+                           format_fixed(worst, 3) + " mm is left there (first at " + places + ")");
   }
 
   std::vector<geom::Point3> sample(const ReachIndex& bare) const {
@@ -189,15 +192,15 @@ class Planner {
     // A holder that begins beyond the part's whole width never meets it.
     double low = tool_.shank_length, high = std::max(low, 0.0) + 2 * part_.radius_max + tool_.radius;
     if (!fits(part_.mesh, tool_, high, centers))
-      return error(ErrorCode::geometry, "the holder meets the part at every contact point (a slimmer holder)");
+      return error(ErrorCode::geometry,
+                   "the holder meets the part at every contact point (a slimmer holder)");
     for (int i = 0; i < 12 && high - low > 0.05; ++i) {
       const double middle = (low + high) / 2;
       (fits(part_.mesh, tool_, middle, centers) ? high : low) = middle;
     }
-    return error(ErrorCode::geometry,
-                 "the holder meets the part at every contact point with a shank of " +
-                     format_shortest(tool_.shank_length) + " mm (a shank_length of " +
-                     format_fixed(std::ceil(high * 10) / 10, 1) + " mm or more)");
+    return error(ErrorCode::geometry, "the holder meets the part at every contact point with a shank of " +
+                                          format_shortest(tool_.shank_length) + " mm (a shank_length of " +
+                                          format_fixed(std::ceil(high * 10) / 10, 1) + " mm or more)");
   }
 
   const Part& part_;

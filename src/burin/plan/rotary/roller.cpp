@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+// All moves keep x: a ball that is pushed stays in the plane it was meant for, so that neighbours on a path
+// stay neighbours (free pushes slip out of the ends of slots, and along helical valleys).
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "burin/plan/rotary/tsi.h"
 
@@ -9,31 +12,42 @@ namespace burin::rotary::detail {
 namespace {
 
 using geom::Point3;
+using geom::Vec2;
 using geom::Vec3;
 
-/// A point of the part that the ball must not hold, as seen from the ball's centre.
-struct Wall {
-  Point3 p;
-};
+/// A point of the part that the ball must not hold.
+using Wall = Point3;
 
-/// The smallest move after which the centre is R away from all walls, each taken as a plane; walls that would
-/// hold it back are left out. At most three.
-Vec3 move_off(Point3 c, const std::vector<Wall>& walls, double radius) {
-  std::array<Vec3, 3> n;
-  std::array<double, 3> need{};
-  const std::size_t count = walls.size();
+/// Walls that face along X more than this cannot be left in the plane.
+constexpr double kLeastAcross = 0.05;
+
+/// Pushes longer than this part of the radius are looked at again.
+constexpr double kLongPush = 0.25;
+
+Vec2 across(Vec3 v) {
+  return {v.y, v.z};
+}
+Point3 moved(Point3 c, Vec2 by) {
+  return {c.x, c.y + by.x, c.z + by.y};
+}
+
+/// The smallest move in the plane after which the centre is R away from all walls, each taken as the plane
+/// that touches the ball there; walls that would hold it back are left out.
+Vec2 move_off(Point3 c, const std::vector<Wall>& walls, double radius) {
+  std::array<Vec2, 3> n;
+  std::array<double, 3> need{}, lambda{};
+  const std::size_t count = std::min<std::size_t>(walls.size(), 3);
   for (std::size_t i = 0; i < count; ++i) {
-    n[i] = unit(c - walls[i].p);
-    need[i] = radius - distance(c, walls[i].p);
+    n[i] = across(unit(c - walls[i]));
+    need[i] = radius - distance(c, walls[i]);
   }
-  // Dykstra's projections: few, the sizes are tiny.
-  std::array<double, 3> lambda{};
-  Vec3 move;
+  // Hildreth's projections: three planes at most.
+  Vec2 move;
   constexpr int kSweeps = 60;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double change = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const double more = std::max(need[i] - dot(n[i], move), -lambda[i]);
+      const double more = std::max((need[i] - dot(n[i], move)) / norm2(n[i]), -lambda[i]);
       lambda[i] += more;
       move = move + more * n[i];
       change = std::max(change, std::abs(more));
@@ -48,9 +62,9 @@ Vec3 move_off(Point3 c, const std::vector<Wall>& walls, double radius) {
 Roller::Roller(const geom::MeshIndex& part, double radius, double accuracy_mm)
     : part_(part), radius_(radius), accuracy_(accuracy_mm), size_(part.bounds().diagonal() + 4 * radius) {}
 
-double Roller::depth(Point3 center) const {
-  const auto hit = part_.nearest(center, radius_);
-  return hit ? radius_ - hit->distance : 0;
+double Roller::room(Point3 center) const {
+  const auto hit = part_.nearest(center, 2 * radius_);
+  return hit ? hit->distance - radius_ : radius_;
 }
 
 bool Roller::push_out(Point3& c) const {
@@ -63,11 +77,16 @@ bool Roller::push_out(Point3& c) const {
     if (hit->distance < accuracy_) return false;  // no direction
     // The walls of the last rounds; one that is nearly the same is replaced.
     const Vec3 n = unit(c - hit->p);
-    std::erase_if(walls, [&](const Wall& w) { return dot(unit(c - w.p), n) > 0.999; });
+    if (norm(across(n)) < kLeastAcross) return false;
+    std::erase_if(walls, [&](const Wall& w) {
+      const Vec3 own = unit(c - w);
+      return dot(own, n) > 0.999 || norm(across(own)) < kLeastAcross;
+    });
     if (walls.size() == 3) walls.erase(walls.begin());
-    walls.push_back({hit->p});
-    c = c + move_off(c, walls, radius_);
-    if (!(distance(c, start) < 4 * radius_)) return false;
+    walls.push_back(hit->p);
+    c = moved(c, move_off(c, walls, radius_));
+    // Farther than that it is not this wall's foot any more: `radially` finds the way.
+    if (!(distance(c, start) < radius_)) return false;
   }
   return false;
 }
@@ -81,22 +100,54 @@ bool Roller::radially(Point3& c) const {
   return true;
 }
 
+/// From a clear place towards the wanted one, sliding along what is in the way, as near as it gets.
+void Roller::settle(Point3& c, Point3 wanted) const {
+  constexpr int kRounds = 200;
+  double step = radius_ / 4;
+  for (int round = 0; round < kRounds && step > accuracy_; ++round) {
+    const double rest = distance(c, wanted);
+    if (rest <= accuracy_) return;
+    Point3 next = c + std::min(step, rest) * unit(wanted - c);
+    // Steps are shorter than the ball: none leads through a wall, only into it.
+    const bool nearer = push_out(next) && rest - distance(next, wanted) > 0.01 * std::min(step, rest);
+    if (nearer) {
+      c = next;
+    } else {
+      step *= 0.5;
+    }
+  }
+}
+
+/// A ball that hangs free goes towards the nearest point until it touches: by the room there is, which
+/// nothing else can be nearer than.
+bool Roller::pull_in(Point3& c, geom::MeshIndex::Hit& hit) const {
+  constexpr int kRounds = 60;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto found = part_.nearest(c, size_);
+    if (!found || !(found->distance > 0)) return false;
+    hit = *found;
+    const double room = hit.distance - radius_;
+    if (room <= accuracy_) return true;
+    const Vec3 n = unit(c - hit.p);
+    const double flat = norm(across(n));
+    c = flat > 0.3 ? moved(c, (-room / flat) * across(n)) : c - room * n;
+  }
+  return true;
+}
+
 bool Roller::touch(Point3 near, Place& place) const {
   Point3 c = near;
   if (part_.inside(c) || !push_out(c) || part_.inside(c)) {
     c = near;
     if (!radially(c)) return false;
   }
-  auto hit = part_.nearest(c, size_);
-  if (!hit) return false;
-  if (hit->distance > radius_ + accuracy_) {
-    // Straight towards the nearest point: nothing else can become nearer on the way.
-    c = hit->p + radius_ * unit(c - hit->p);
-  }
-  if (!(hit->distance > 0)) return false;
-  place.contact.p = hit->p;
-  place.contact.n = unit(c - hit->p);
-  place.center = hit->p + radius_ * place.contact.n;
+  // Long pushes between several walls may end beside the nearest place.
+  if (distance(c, near) > kLongPush * radius_) settle(c, near);
+  geom::MeshIndex::Hit hit;
+  if (!pull_in(c, hit)) return false;
+  place.contact.p = hit.p;
+  place.contact.n = unit(c - hit.p);
+  place.center = hit.p + radius_ * place.contact.n;
   place.state = State::moved;
   return true;
 }

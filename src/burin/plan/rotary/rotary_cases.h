@@ -25,8 +25,8 @@ inline ArcSpline circle(double r, Point2 c = {}) {
   return {{geom::make_arc(e, w, c, true), geom::make_arc(w, e, c, true)}, true};
 }
 
-/// Straight lines between corners, each rounded with its radius (0: sharp). Counter-clockwise when the corners
-/// are.
+/// Straight lines between corners, each rounded with its radius (0: sharp). Counter-clockwise when the
+/// corners are.
 struct Corner {
   Point2 p;
   double radius = 0;

@@ -28,7 +28,8 @@ CenterPath ring_of(const ArcSpline& section, double radius, double density = 1e-
   EXPECT_TRUE(paths);
   CenterPath path;
   path.closed = true;
-  for (const Contact& c : paths->paths[0].points) path.places.push_back({c, c.p + radius * c.n, State::ok, 0});
+  for (const Contact& c : paths->paths[0].points)
+    path.places.push_back({c, c.p + radius * c.n, State::ok, 0});
   return path;
 }
 
@@ -90,7 +91,8 @@ double measured_error(const CenterPath& path, const std::vector<Place>& points, 
   for (const Place& p : path.places) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k + 1 < points.size() + (path.closed ? 1 : 0); ++k) {
-      least = std::min(least, distance_to(p.contact.p, points[k].center, points[(k + 1) % points.size()].center));
+      least =
+          std::min(least, distance_to(p.contact.p, points[k].center, points[(k + 1) % points.size()].center));
     }
     worst = std::max(worst, std::abs(least - radius));
   }
@@ -126,9 +128,10 @@ TEST(Thin, EllipsesAndCamsTakeWithinTwoPercentOfTheFewest) {
     ArcSpline section;
     double radius, tolerance;
   };
-  for (const Case& c : {Case{"ellipse", cases::ellipse(20, 12, 200), 2, 0.01},
-                        Case{"flat ellipse", cases::ellipse(30, 6, 300), 1.5, 0.01},
-                        Case{"cam", cases::cam(20, 6, 10), 3, 0.01}, Case{"cam", cases::cam(12, 4, 6), 2, 0.002}}) {
+  for (const Case& c :
+       {Case{"ellipse", cases::ellipse(20, 12, 200), 2, 0.01},
+        Case{"flat ellipse", cases::ellipse(30, 6, 300), 1.5, 0.01},
+        Case{"cam", cases::cam(20, 6, 10), 3, 0.01}, Case{"cam", cases::cam(12, 4, 6), 2, 0.002}}) {
     SCOPED_TRACE(c.name);
     const CenterPath path = ring_of(c.section, c.radius, 2e-4 * c.tolerance / 0.01);
     const SsiResult r = thin(path, c.radius, c.tolerance);
@@ -143,7 +146,8 @@ TEST(Thin, EllipsesAndCamsTakeWithinTwoPercentOfTheFewest) {
 
 TEST(Thin, HollowSectionsKeepTheTolerance) {
   // Undercut: a wide hollow, and sharp convex corners.
-  const ArcSpline section = cases::rounded({{{15, -10}, 0}, {{15, 10}, 0}, {{0, 4}, 9}, {{-15, 10}, 2}, {{-15, -10}, 0}});
+  const ArcSpline section =
+      cases::rounded({{{15, -10}, 0}, {{15, 10}, 0}, {{0, 4}, 9}, {{-15, 10}, 2}, {{-15, -10}, 0}});
   const CenterPath path = ring_of(section, 2);
   const SsiResult r = thin(path, 2, 0.01);
   EXPECT_LE(measured_error(path, r.points, 2), 0.01);

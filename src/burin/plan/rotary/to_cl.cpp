@@ -14,11 +14,15 @@ cl::Pose cl_pose(const AxisPose& pose, double radius) {
 /// Straight up and down in the air goes as fast as the machine can; what stands on the part goes at the feed.
 bool fast(const Leg& leg, std::size_t i) {
   switch (leg.kind) {
-    case LegKind::rapid: return true;
-    case LegKind::retract: return i + 1 == leg.poses.size();
-    case LegKind::approach: return leg.descent > 0 && i <= leg.descent;
+    case LegKind::rapid:
+      return true;
+    case LegKind::retract:
+      return i + 1 == leg.poses.size();
+    case LegKind::approach:
+      return leg.descent > 0 && i <= leg.descent;
     case LegKind::cut:
-    case LegKind::link: break;
+    case LegKind::link:
+      break;
   }
   return false;
 }

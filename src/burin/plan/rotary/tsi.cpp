@@ -103,7 +103,8 @@ class Resolver {
     // cannot be asked for.
     return std::max(half - o.deflection_mm, 1.05 * o.deflection_mm);
   }
-  bool good(const Contact& c) const { return roller_.depth(c.p + radius_ * c.n) <= allowed_; }
+  bool good(const Contact& c) const { return -roller_.room(c.p + radius_ * c.n) <= allowed_; }
+  Place standing(std::size_t i) const;
   Contact last_good(Contact good_end, Contact bad_end) const;
   void bridge(std::size_t first, std::size_t end);
   void follow(std::size_t first, std::size_t end);
@@ -117,6 +118,7 @@ class Resolver {
   Roller roller_;
   std::vector<Contact> contacts_;
   std::vector<std::uint8_t> original_, good_;
+  std::vector<double> room_;
   TsiResult result_;
 };
 
@@ -224,11 +226,24 @@ void Resolver::follow(std::size_t first, std::size_t end) {
   append(places, left, nullptr, nullptr);
 }
 
+/// The place at a contact that does not gouge. Between contacts that follow the part only roughly (lines on
+/// meshes) the ball may hang free: it goes in until it touches.
+Place Resolver::standing(std::size_t i) const {
+  Place place = detail::place_at(at(i), radius_);
+  if (room_[i % room_.size()] > 0.5 * options_.tolerance_mm) {
+    Place touching = place;
+    if (roller_.touch(place.center, touching)) return touching;
+  }
+  return place;
+}
+
 TsiResult Resolver::run() {
   const std::size_t n = contacts_.size();
+  room_.reserve(n);
   good_.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {
-    good_.push_back(good(contacts_[i]));
+    room_.push_back(roller_.room(contacts_[i].p + radius_ * contacts_[i].n));
+    good_.push_back(-room_[i] <= allowed_);
     result_.interfering += original_[i] && !good_[i];
   }
   std::size_t start = 0;
@@ -242,7 +257,8 @@ TsiResult Resolver::run() {
   for (std::size_t i = start; i < start + n;) {
     if (!result_.path.closed && i >= n) break;
     if (good_[i % n]) {
-      result_.path.places.push_back(detail::place_at(at(i), radius_));
+      result_.path.places.push_back(standing(i));
+      result_.moved += result_.path.places.back().state == State::moved;
       ++i;
       continue;
     }

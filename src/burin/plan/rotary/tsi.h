@@ -29,14 +29,16 @@ class Roller {
  public:
   Roller(const geom::MeshIndex& part, double radius, double accuracy_mm);
 
-  /// Nothing when there is no such place within the part's box and the ball's radius. `u`, `w` are copied.
+  /// False when there is no such place. u and w of `place` stay.
   bool touch(geom::Point3 near, Place& place) const;
-  /// How deep the nearest point of the mesh lies in the ball (0: not at all).
-  double depth(geom::Point3 center) const;
+  /// Distance from the ball to the mesh, negative where the ball holds some of it; radius when there is more.
+  double room(geom::Point3 center) const;
 
  private:
   bool push_out(geom::Point3& c) const;
   bool radially(geom::Point3& c) const;
+  void settle(geom::Point3& c, geom::Point3 wanted) const;
+  bool pull_in(geom::Point3& c, geom::MeshIndex::Hit& hit) const;
 
   const geom::MeshIndex& part_;
   double radius_, accuracy_;
