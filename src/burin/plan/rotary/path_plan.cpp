@@ -279,6 +279,10 @@ class PathPlanner {
 void find_reach(const Shared& shared, Node& node) {
   const Point3 c = node.place.center;
   node.initial = std::atan2(c.y, c.z);
+  // Moves are proven, a place alone is not: where the ball itself is in the part, no axis helps.
+  const bool sunk = shared.options.tsi == Tsi::surface &&
+                    shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
+  if (sunk) node.place.state = State::unreachable;
   if (node.place.state == State::unreachable) {
     node.initial_interferes = true;
     return;
