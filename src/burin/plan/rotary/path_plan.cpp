@@ -280,19 +280,14 @@ void find_reach(const Shared& shared, Node& node) {
   const Point3 c = node.place.center;
   node.initial = std::atan2(c.y, c.z);
   // Moves are proven, a place alone is not: where the ball itself is in the part, no axis helps.
-  const bool sunk = shared.options.tsi == Tsi::surface &&
-                    shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
+  const bool sunk = shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
   if (sunk) node.place.state = State::unreachable;
   if (node.place.state == State::unreachable) {
     node.initial_interferes = true;
     return;
   }
-  // A ball that sinks in is not cut with, not even at a single place.
-  const double depth = shared.options.tolerance_mm;
-  const bool gouges = depth < shared.tool.radius && shared.mesh.nearest(c, shared.tool.radius - depth);
-  AngleSet exact = gouges ? AngleSet{} : shared.reach.reachable(c);
+  AngleSet exact = shared.reach.reachable(c);
   node.initial_interferes = !contains(exact, node.initial);
-  if (gouges) return;
   // In a slot as wide as the tool the ball sinks in by what resolve_tsi allows, and the shank with it.
   ReachOptions lenient;
   lenient.grow_mm = -shared.options.tolerance_mm / 2;
