@@ -387,6 +387,14 @@ class Program(unittest.TestCase):
             with open(a.file(name), "rb") as one, open(b.file(name), "rb") as two:
                 self.assertEqual(one.read(), two.read(), name)
 
+    def test_report_of_the_tolerance(self):
+        """The parameters are those in force: a forced join may bend as much as --tolerance says unless told otherwise."""
+        text = program(cycle(10, 10, s=0.05), block(10, flat(0, 10, 0, 5)))
+        p = Run(text, "--tolerance", "0.005").json()["parameters"]
+        self.assertEqual((p["tolerance_mm"], p["join_deviation_mm"]), (0.005, 0.005))
+        p = Run(text, "--tolerance", "0.005", "--join-deviation", "0.02").json()["parameters"]
+        self.assertEqual((p["tolerance_mm"], p["join_deviation_mm"]), (0.005, 0.02))
+
     def test_errors_leave_nothing(self):
         good = program(cycle(10, 10), block(10, flat(0, 30, 0, 20)))
         for bad, where in ((good.replace("P10 Q10", "P30 Q10"), "p.nc:4:"), (good.replace("X10. ", "X10. X11. ", 1), "p.nc:"),

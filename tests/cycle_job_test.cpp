@@ -97,7 +97,7 @@ bool reversed_normal(const NurbsSurface& s) {
 
 TEST(CycleJob, ScallopIsWhatWasAskedFor) {
   std::mt19937 random(20);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 12; ++i) {
     const auto method = i % 2 ? nc::PathMethod::iso_scallop : nc::PathMethod::iso_parametric;
     const job::CycleJob job = make(program({block(10, bumpy(random))}, method));
     ASSERT_EQ(job.runs.size(), 1u);
@@ -112,6 +112,45 @@ TEST(CycleJob, ScallopIsWhatWasAskedFor) {
     }
     EXPECT_LT(report.gouge_max_mm, 1e-3);
     EXPECT_GT(report.ridges.size(), 10u);
+  }
+}
+
+/// A flat parallelogram 20 mm long and 12 mm wide whose ends stand at `slant` (tangent) to its sides.
+NurbsSurface sheared(double slant) {
+  NurbsSurface s;
+  s.degree_u = s.degree_v = 1;
+  s.count_u = s.count_v = 2;
+  s.knots_u = s.knots_v = {0, 0, 1, 1};
+  for (const double y : {0.0, 12.0})
+    for (const double x : {0.0, 20.0}) s.points.push_back(geom::homogeneous({x + slant * y, y, 5}, 1));
+  return s;
+}
+
+TEST(CycleJob, ScallopOnEdgesThatPathsMeetAtASlant) {
+  for (const double slant : {0.3, -1.0, 2.5}) {
+    job::CycleOptions options;
+    options.along = cycle::Along::u;
+    const NurbsSurface s = sheared(slant);
+    const job::CycleJob job = make(program({block(10, s)}, nc::PathMethod::iso_scallop), options);
+    ASSERT_EQ(job.runs.size(), 1u);
+    const verify::ScallopReport report =
+        measure_scallop(s, tips_of(job.runs[0], 0), {.radius_mm = 3, .spacing_mm = 0.1});
+    EXPECT_LE(report.scallop_max_mm, 0.02 * 1.02) << slant;
+    // About the acute corners of the others fronts turn, and what ends at the border is cut by its path too.
+    if (slant < 1 && slant > -1) {
+      EXPECT_GE(report.scallop_min_mm, 0.02 * 0.98) << slant;
+    }
+    // What the paths run over the edges by is less than half a step square to them.
+    const double ends = 0.5 * std::sqrt(8 * 3 * 0.02) * std::sqrt(1 + slant * slant);
+    for (const cycle::Motion& m : job.runs[0].plan.motions) {
+      if (m.kind != cycle::MotionKind::cut) continue;
+      for (const geom::QuinticNode& n : m.path.nodes) {
+        const double x = n.p.x - slant * n.p.y;
+        EXPECT_TRUE(x > -ends && x < 20 + ends) << x;
+      }
+      // The parameters stay on the surface.
+      for (const geom::QuinticNode& n : m.uv.nodes) EXPECT_TRUE(n.p.x >= 0 && n.p.x <= 1) << n.p.x;
+    }
   }
 }
 
@@ -262,6 +301,20 @@ TEST(CycleJob, SetpointsKeepTheLimits) {
     EXPECT_NEAR(q.jerk_max_mm_s3, jerk, 1e-6 * jerk);
     EXPECT_LE(q.chord_error_max_mm, limits.chord_error_mm);
     EXPECT_LT(q.feed_fluctuation_max, 1e-4);
+  }
+}
+
+TEST(CycleJob, RepeatsTakeTheirOwnWayThere) {
+  const job::CycleJob job = make(
+      "%\nG21;\nG90 G00 X-50. Y0. Z30.;\nG106.1 W25.;\nN10 G06.23 U2 V2 P2 Q2 D6. L0. F1200. S0.05;\n"
+      "X0. Y0. Z0. W1.;\nX10. Y0. Z0. W1.;\nX0. Y5. Z0. W1.;\nX10. Y5. Z0. W1.;\n"
+      "G91 X20.;\nX20.;\nG80;\nM30;\n%\n");
+  ASSERT_EQ(job.runs.size(), 3u);
+  for (const job::CycleRun& run : job.runs) {
+    double rapid = 0;
+    for (const cycle::Motion& m : run.plan.motions)
+      if (m.kind == cycle::MotionKind::rapid) rapid += geom::length(m.path);
+    EXPECT_NEAR(run.plan.rapid_mm, rapid, 1e-9);
   }
 }
 

@@ -9,6 +9,7 @@ class Cli;
 void add_laser(Cli& cli);
 void add_kerf(Cli& cli);
 void add_cycle(Cli& cli);
+void add_rotary(Cli& cli);
 void add_post(Cli& cli);
 void add_surfaces(Cli& cli);
 

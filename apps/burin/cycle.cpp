@@ -175,24 +175,24 @@ Result<Json> program_size(const job::CycleJob& job, std::size_t bytes, const pos
               {"g01_program_bytes", lines->text.size()}};
 }
 
-void fill_report(const CycleArgs& args, const job::CycleJob& job, const Servo& servo, const post::NcText& nc,
-                 Session& session) {
+/// `options`: those in force, with the tolerance of the command line.
+void fill_report(const job::CycleOptions& options, const servo::Limits& limits, const job::CycleJob& job,
+                 const Servo& servo, const post::NcText& nc, Session& session) {
   const Worst w = worst_of(job);
-  std::size_t surfaces_in = job.program.blocks.size();
   session.report.parameters = {
-      {"period_s", args.limits.period_s},
-      {"chord_error_mm", args.limits.chord_error_mm},
-      {"accel_mm_s2", args.limits.accel_mm_s2},
-      {"jerk_mm_s3", args.limits.jerk_mm_s3},
-      {"rapid_mm_min", args.limits.rapid_mm_min},
-      {"tolerance_mm", args.plan.tolerance_mm},
-      {"join_mm", args.plan.join_mm},
-      {"join_deviation_mm", args.plan.join_deviation_mm.value_or(args.plan.tolerance_mm)},
-      {"along", job.runs.empty() ? word(args.plan.along) : word(job.runs.front().plan.along)},
+      {"period_s", limits.period_s},
+      {"chord_error_mm", limits.chord_error_mm},
+      {"accel_mm_s2", limits.accel_mm_s2},
+      {"jerk_mm_s3", limits.jerk_mm_s3},
+      {"rapid_mm_min", limits.rapid_mm_min},
+      {"tolerance_mm", options.tolerance_mm},
+      {"join_mm", options.join_mm},
+      {"join_deviation_mm", options.join_deviation_mm.value_or(options.tolerance_mm)},
+      {"along", job.runs.empty() ? word(options.along) : word(job.runs.front().plan.along)},
       {"dialect", session.common.dialect},
-      {"strict", args.plan.strict}};
+      {"strict", options.strict}};
   session.report.counts = {{"blocks", job.program.nc_blocks},
-                           {"surfaces_in", surfaces_in},
+                           {"surfaces_in", job.program.blocks.size()},
                            {"surfaces_out", job.surfaces_out},
                            {"paths", job.paths},
                            {"setpoints", servo.setpoints.size()},
@@ -391,8 +391,7 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   if (!size) return in_file(size.error());
   session.report.extra["program_size"] = *size;
   if (auto ok = compare(*job, options, session); !ok) return in_file(ok.error());
-  fill_report(args, *job, *servo, *nc, session);
-  session.report.parameters["tolerance_mm"] = options.tolerance_mm;
+  fill_report(options, args.limits, *job, *servo, *nc, session);
   return put_outputs(args, *job, *servo, *nc, nc_path, *text, session);
 }
 

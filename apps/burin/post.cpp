@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// burin post: CL data of any origin -> NC of one dialect, for machines whose tool stands upright.
+// burin post: CL data of any origin -> NC of one dialect and machine.
 #include "burin/post/emit.h"
 
 #include <algorithm>
@@ -18,22 +18,8 @@ namespace {
 
 struct PostArgs {
   std::string path, machine;
+  post::FeedMode feed = post::FeedMode::inverse_time;
 };
-
-/// The machine has to be one that burin can post for today: linear axes only.
-Result<model::Machine> linear_machine(const std::string& name) {
-  auto machine = model::find_machine(name);
-  if (!machine) return machine.error();
-  for (const model::Axis& axis : machine->axes) {
-    if (axis.kind == model::AxisKind::rotary) {
-      return Error{ErrorCode::unsupported,
-                   "machine " + machine->name + " has the rotary axis " + std::string(1, axis.letter) +
-                       " (machines with linear axes only: laser-xy, xyz, or a file of your own)",
-                   {}};
-    }
-  }
-  return machine;
-}
 
 /// Error for the first pose whose axis is not upright: it needs a machine that can tilt.
 Result<void> check_upright(const cl::Program& program, const model::Machine& machine,
@@ -55,8 +41,42 @@ Result<void> check_upright(const cl::Program& program, const model::Machine& mac
   return {};
 }
 
+Result<post::NcText> upright_nc(const cl::Program& program, const model::Machine& machine,
+                                const post::Dialect& dialect, const PostArgs& args, Session& session) {
+  if (auto upright = check_upright(program, machine, args.path); !upright) return upright.error();
+  post::EmitOptions options;
+  options.write_z = machine.axis('Z') != nullptr;
+  return post::emit(program, dialect, options, session.diagnostics);
+}
+
+/// Joint coordinates of a machine with rotary axes.
+Result<post::NcText> rotary_nc(const cl::Program& program, const model::Machine& machine,
+                               const post::Dialect& dialect, const PostArgs& args, Session& session) {
+  auto kinematics = kinematics::Kinematics::make(machine);
+  if (!kinematics) return kinematics.error();
+  kinematics::JointPathOptions options;
+  options.tolerance_mm = session.common.tolerance_mm;
+  auto path = kinematics::make_joint_path(*kinematics, program, options);
+  if (!path) {
+    Error error = path.error();
+    error.where.file = args.path;
+    return error;
+  }
+  session.report.counts["inserted"] = path->inserted;
+  session.report.counts["feed_limited"] = path->feed_limited;
+  session.report.quality["max_deviation_mm"] = path->deviation_mm;
+  if (path->feed_limited > 0)
+    session.diagnostics.info(
+        "feed_limited", std::to_string(path->feed_limited) + " of " + std::to_string(path->moves.size()) +
+                            " moves are slower than the feed: an axis is at its speed limit");
+  post::JointEmitOptions emit;
+  emit.write_z = true;
+  emit.feed = args.feed;
+  return post::emit_joints(program, *kinematics, *path, dialect, emit, session.diagnostics);
+}
+
 Result<void> run_post(const PostArgs& args, Session& session) {
-  auto machine = linear_machine(args.machine);
+  auto machine = model::find_machine(args.machine);
   if (!machine) return machine.error();
   auto dialect = post::find_dialect(session.common.dialect);
   if (!dialect) return dialect.error();
@@ -66,14 +86,14 @@ Result<void> run_post(const PostArgs& args, Session& session) {
   apt.file_name = args.path;
   auto program = cl::read_apt(*text, apt, session.diagnostics);
   if (!program) return program.error();
-  if (auto upright = check_upright(*program, *machine, args.path); !upright) return upright.error();
-
-  post::EmitOptions options;
-  options.write_z = machine->axis('Z') != nullptr;
-  auto nc = post::emit(*program, *dialect, options, session.diagnostics);
+  const bool rotary = std::any_of(machine->axes.begin(), machine->axes.end(), [](const model::Axis& axis) {
+    return axis.kind == model::AxisKind::rotary;
+  });
+  auto nc = (rotary ? rotary_nc : upright_nc)(*program, *machine, *dialect, args, session);
   if (!nc) return nc.error();
   session.report.parameters["machine"] = machine->name;
   session.report.parameters["dialect"] = dialect->name;
+  session.report.parameters["tolerance_mm"] = session.common.tolerance_mm;
   session.report.counts["moves"] = nc->moves;
   session.report.counts["nc_lines"] = nc->line_to_record.size();
   const std::string output = session.common.output.empty()
@@ -86,13 +106,21 @@ Result<void> run_post(const PostArgs& args, Session& session) {
 
 void add_post(Cli& cli) {
   auto args = std::make_shared<PostArgs>();
-  CLI::App& app = cli.add_command("post", "NC program from a CL file, for machines without rotary axes",
-                                  "  burin post path.cl --machine xyz --dialect linuxcnc -o path.ngc\n"
-                                  "  burin post path.cl --machine laser-xy --dialect grbl -o -\n",
-                                  [args](Session& session) { return run_post(*args, session); });
+  CLI::App& app =
+      cli.add_command("post", "NC program from a CL file, for machines of three to five axes",
+                      "  burin post path.cl --machine xyz --dialect linuxcnc -o path.ngc\n"
+                      "  burin post path.cl --machine laser-xy --dialect grbl -o -\n"
+                      "  burin post blade.cl --machine xyzac-trunnion --tolerance 0.005 -o blade.ngc\n",
+                      [args](Session& session) { return run_post(*args, session); });
   add_text(app, "PATH.cl", args->path, "FILE", "tool path as APT CL text")->required();
-  add_text(app, "--machine", args->machine, "NAME", "a preset (laser-xy, xyz) or a machine file NAME.toml")
+  add_text(app, "--machine", args->machine, "NAME",
+           "a preset (laser-xy, xyz, xyza, xyzac-trunnion, ...) or a machine file NAME.toml")
       ->required();
+  add_choice<post::FeedMode>(
+      app, "--feed-mode", args->feed,
+      {{"inverse-time", post::FeedMode::inverse_time}, {"per-minute", post::FeedMode::per_minute}},
+      "of machines with rotary axes: G93, or G94 with an F that gives the tip its feed");
+  cli.add_tolerance(app);
   cli.add_dialect(app);
   cli.add_output(app, "NC program (default: the CL file's name with .ngc)");
   cli.add_json(app);

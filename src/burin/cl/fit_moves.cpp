@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "burin/geom/point_tools.h"
+
 namespace burin::cl {
 namespace {
 
@@ -19,13 +21,6 @@ constexpr int kMaxHalvings = 24;
 constexpr double kMaxSweep = 3.1;
 
 using Bezier = std::array<Point3, 6>;
-
-double distance_to_segment(Point3 p, Point3 a, Point3 b) {
-  const Vec3 d = b - a;
-  const double l2 = dot(d, d);
-  const double s = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0.0, 1.0) : 0.0;
-  return distance(p, a + s * d);
-}
 
 Bezier bezier_of(const geom::QuinticPath& path, std::size_t i) {
   const geom::QuinticNode& a = path.nodes[i];
@@ -67,19 +62,16 @@ std::vector<Point3> polyline_of(const geom::QuinticPath& path, double tolerance)
 
 /// A plane of arcs: coordinates a, b in it and c along its normal, right-handed.
 struct Frame {
-  int a, b, c;
+  std::size_t a, b, c;
 };
 constexpr std::array<Frame, 3> kFrames = {Frame{0, 1, 2}, Frame{2, 0, 1}, Frame{1, 2, 0}};
 
-double coordinate(const Point3& p, int axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
 Point3 from_frame(const Frame& f, double a, double b, double c) {
-  std::array<double, 3> x{};
-  x[static_cast<std::size_t>(f.a)] = a;
-  x[static_cast<std::size_t>(f.b)] = b;
-  x[static_cast<std::size_t>(f.c)] = c;
-  return {x[0], x[1], x[2]};
+  Point3 p;
+  set_component(p, f.a, a);
+  set_component(p, f.b, b);
+  set_component(p, f.c, c);
+  return p;
 }
 
 class Fitter {
@@ -157,8 +149,8 @@ class Fitter {
   /// allow.
   std::optional<Arc> arc(const Frame& f, std::size_t from, std::size_t to) const {
     const Point3 p = points_[from], q = points_[to];
-    const double ax = coordinate(p, f.a), ay = coordinate(p, f.b);
-    const double dx = coordinate(q, f.a) - ax, dy = coordinate(q, f.b) - ay;
+    const double ax = component(p, f.a), ay = component(p, f.b);
+    const double dx = component(q, f.a) - ax, dy = component(q, f.b) - ay;
     const double chord = std::hypot(dx, dy);
     if (!(chord > tolerance_)) return std::nullopt;
     const auto sagitta = common_sagitta(f, from, to, ax, ay, dx / chord, dy / chord, chord);
@@ -176,7 +168,7 @@ class Fitter {
                                        double ex, double ey, double chord) const {
     double lo = -chord, hi = chord;
     for (std::size_t k = from + 1; k < to; ++k) {
-      const double px = coordinate(points_[k], f.a) - ax, py = coordinate(points_[k], f.b) - ay;
+      const double px = component(points_[k], f.a) - ax, py = component(points_[k], f.b) - ay;
       const double x = px * ex + py * ey, y = py * ex - px * ey;
       if (x <= 0 || x >= chord) return std::nullopt;  // beyond a half circle
       const double weight = 4 * x * (chord - x) / (chord * chord);
@@ -198,21 +190,21 @@ class Fitter {
   std::optional<Arc> checked(const Frame& f, std::size_t from, std::size_t to, double cx, double cy, double r,
                              bool counter_clockwise) const {
     const double sign = counter_clockwise ? 1 : -1;
-    const double start = std::atan2(coordinate(points_[from], f.b) - cy, coordinate(points_[from], f.a) - cx);
+    const double start = std::atan2(component(points_[from], f.b) - cy, component(points_[from], f.a) - cx);
     const auto angle = [&](const Point3& p) {
-      const double turn = sign * (std::atan2(coordinate(p, f.b) - cy, coordinate(p, f.a) - cx) - start);
+      const double turn = sign * (std::atan2(component(p, f.b) - cy, component(p, f.a) - cx) - start);
       return turn < -1e-9 ? turn + 2 * geom::kPi : turn;
     };
     const double sweep = angle(points_[to]);
     if (!(sweep > 0) || sweep > kMaxSweep) return std::nullopt;
-    const double c0 = coordinate(points_[from], f.c), rise = coordinate(points_[to], f.c) - c0;
+    const double c0 = component(points_[from], f.c), rise = component(points_[to], f.c) - c0;
     double worst = 0, before = 0, longest = 0;
     for (std::size_t k = from + 1; k <= to; ++k) {
       const Point3& p = points_[k];
       const double turn = k == to ? sweep : angle(p);
       if (turn < before || turn > sweep) return std::nullopt;
-      const double radial = std::hypot(coordinate(p, f.a) - cx, coordinate(p, f.b) - cy) - r;
-      const double axial = coordinate(p, f.c) - (c0 + rise * turn / sweep);
+      const double radial = std::hypot(component(p, f.a) - cx, component(p, f.b) - cy) - r;
+      const double axial = component(p, f.c) - (c0 + rise * turn / sweep);
       worst = std::max(worst, std::hypot(radial, axial));
       longest = std::max(longest, turn - before);
       before = turn;

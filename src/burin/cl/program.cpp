@@ -6,6 +6,7 @@
 #include <string>
 
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 
 namespace burin::cl {
 namespace {
@@ -15,13 +16,6 @@ using geom::Vec3;
 
 // Axes and normals may come from files with six or seven decimals.
 constexpr double kUnitTolerance = 1e-6;
-
-bool finite(Vec3 v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-bool finite(Point3 p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// The part of `v` in the plane normal to the unit vector `n`.
 Vec3 in_plane(Vec3 v, Vec3 n) {
@@ -42,14 +36,15 @@ struct Checker {
   }
 
   Result<void> axis(Vec3 v, const char* name) const {
-    if (!finite(v) || std::abs(norm(v) - 1) > kUnitTolerance)
+    if (!is_finite(v) || std::abs(norm(v) - 1) > kUnitTolerance)
       return error(ErrorCode::range,
                    std::string(name) + " of length " + format_shortest(norm(v)) + " (a unit vector)", true);
     return {};
   }
 
   Result<void> pose(const Pose& p) const {
-    if (!finite(p.tip)) return error(ErrorCode::range, "a coordinate is not finite (finite numbers)", true);
+    if (!is_finite(p.tip))
+      return error(ErrorCode::range, "a coordinate is not finite (finite numbers)", true);
     return axis(p.axis, "tool axis");
   }
 
@@ -70,7 +65,7 @@ struct Checker {
   Result<void> motion(const Arc& a) const {
     if (auto ok = pose(a.to); !ok) return ok;
     if (auto ok = axis(a.normal, "arc normal"); !ok) return ok;
-    if (!finite(a.center) || !std::isfinite(a.radius) || a.radius <= 0)
+    if (!is_finite(a.center) || !std::isfinite(a.radius) || a.radius <= 0)
       return error(ErrorCode::range,
                    "arc with a radius of " + format_shortest(a.radius) +
                        " or a centre that is not finite (a radius above 0)",

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "burin/geom/gauss.h"
+
 namespace burin::geom {
 namespace {
 
@@ -50,17 +52,8 @@ double speed(const Coefficients3& c, double x) {
   return norm(Vec3{slope(c.x), slope(c.y), slope(c.z)});
 }
 
-/// Ten-point Gauss-Legendre over [lo, hi].
 double gauss(const Coefficients3& c, double lo, double hi) {
-  constexpr double node[5] = {0.14887433898163122, 0.43339539412924719, 0.67940956829902441,
-                              0.86506336668898451, 0.97390652851717172};
-  constexpr double weight[5] = {0.29552422471475287, 0.26926671930999636, 0.21908636251598204,
-                                0.14945134915058059, 0.06667134430868814};
-  const double mid = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
-  double sum = 0;
-  for (int i = 0; i < 5; ++i)
-    sum += weight[i] * (speed(c, mid - half * node[i]) + speed(c, mid + half * node[i]));
-  return half * sum;
+  return gauss10([&c](double x) { return speed(c, x); }, lo, hi);
 }
 
 /// Halved until two halves agree with the whole: a speed that nearly vanishes inside (a cusp) needs it.

@@ -39,23 +39,6 @@ std::string title_of(const nc::MachineGroup& group, const nc::SurfaceProgram& pr
   return "G06.23 " + method + ", " + blocks + (group.repeat ? ", repeated" : "");
 }
 
-/// The way from where the tool stands to over the first cut: up first, never down before it is over the
-/// place.
-std::vector<cycle::Motion> approach(Point3 from, Point3 to, double safety_z) {
-  const double top = std::max(from.z, safety_z);
-  std::vector<cycle::Motion> motions;
-  Point3 at = from;
-  for (const Point3 next : {Point3{from.x, from.y, top}, Point3{to.x, to.y, top}, to}) {
-    if (distance(at, next) <= kNoMove_mm) continue;
-    cycle::Motion motion;
-    motion.kind = cycle::MotionKind::rapid;
-    motion.path = geom::straight(at, next);
-    motions.push_back(std::move(motion));
-    at = next;
-  }
-  return motions;
-}
-
 std::vector<cycle::Trim> trims_of(const nc::SurfaceProgram& program, const nc::MachineGroup& group) {
   std::vector<cycle::Trim> trims;
   for (std::size_t patch = 0; patch < group.blocks.size(); ++patch)
@@ -235,7 +218,9 @@ class Builder {
       return m.kind != cycle::MotionKind::rapid;
     });
     if (first == plan.motions.end()) return plan;
-    std::vector<cycle::Motion> motions = approach(at_, first->path.start() + by, safety_z);
+    std::vector<cycle::Motion> motions = cycle::approach(at_, first->path.start() + by, safety_z);
+    for (const cycle::Motion& m : motions) plan.rapid_mm += geom::length(m.path);
+    for (auto it = plan.motions.cbegin(); it != first; ++it) plan.rapid_mm -= geom::length(it->path);
     for (auto it = first; it != plan.motions.end(); ++it) {
       motions.push_back(*it);
       motions.back().path = translated(it->path, by);
@@ -305,18 +290,14 @@ cl::Program as_lines(const CycleJob& job, double tolerance_mm) {
 Result<PathLengths> compare_methods(const CycleJob& job, const CycleRun& run, const CycleOptions& options) {
   const geom::Composite& composite = job.surfaces[run.surfaces].composite;
   cycle::PlanOptions plan = plan_options(run.group, options);
+  const bool by_scallop = plan.method == cycle::Method::iso_scallop;
+  plan.method = by_scallop ? cycle::Method::iso_parametric : cycle::Method::iso_scallop;
+  Diagnostics unused;
+  const auto other = cycle::plan(composite, trims_of(job.program, run.group), run.group.start, plan, unused);
+  if (!other) return other.error();
   PathLengths lengths;
-  for (const cycle::Method method : {cycle::Method::iso_parametric, cycle::Method::iso_scallop}) {
-    plan.method = method;
-    Diagnostics unused;
-    double length = run.plan.cut_mm;
-    if ((method == cycle::Method::iso_scallop) != (run.group.method == nc::PathMethod::iso_scallop)) {
-      auto other = cycle::plan(composite, trims_of(job.program, run.group), run.group.start, plan, unused);
-      if (!other) return other.error();
-      length = other->cut_mm;
-    }
-    (method == cycle::Method::iso_parametric ? lengths.iso_parametric_mm : lengths.iso_scallop_mm) = length;
-  }
+  lengths.iso_parametric_mm = by_scallop ? other->cut_mm : run.plan.cut_mm;
+  lengths.iso_scallop_mm = by_scallop ? run.plan.cut_mm : other->cut_mm;
   lengths.parallel_mm = parallel_length(composite, 0.5 * plan.tool_diameter, plan.scallop, plan.side_step);
   return lengths;
 }

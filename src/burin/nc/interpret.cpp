@@ -5,22 +5,43 @@
 
 namespace burin::nc {
 
-Result<cl::Program> interpret(std::string_view text, const InterpretOptions& options,
-                              Diagnostics& diagnostics) {
+namespace {
+
+Result<cl::Program> read(std::string_view text, const InterpretOptions& options, Diagnostics& diagnostics,
+                         std::vector<kinematics::Joints>* joints) {
   cl::Program program;
-  ModalMachine machine(options, diagnostics, [&program](cl::Record record, int line) {
+  const ModalMachine* reader = nullptr;
+  ModalMachine machine(options, diagnostics, [&](cl::Record record, int line) {
+    if (joints && cl::is_motion(record)) joints->push_back(reader->joints());
     program.add(std::move(record), static_cast<std::uint32_t>(line));
   });
+  reader = &machine;
   Lexer lexer(text, {.file_name = options.file_name});
-  const auto read = for_each_block(lexer, [&machine](const Block& block) -> Result<bool> {
+  const auto done = for_each_block(lexer, [&machine](const Block& block) -> Result<bool> {
     if (auto ok = machine.open(block); !ok) return ok.error();
     if (auto ok = machine.carry_out(); !ok) return ok.error();
     return machine.ended();
   });
-  if (!read) return read.error();
+  if (!done) return done.error();
   program.name = machine.name();
   if (machine.began_with_feed()) program.from = cl::Pose{options.start};
   return program;
+}
+
+}  // namespace
+
+Result<cl::Program> interpret(std::string_view text, const InterpretOptions& options,
+                              Diagnostics& diagnostics) {
+  return read(text, options, diagnostics, nullptr);
+}
+
+Result<JointProgram> interpret_joints(std::string_view text, const InterpretOptions& options,
+                                      Diagnostics& diagnostics) {
+  JointProgram result;
+  auto program = read(text, options, diagnostics, &result.joints);
+  if (!program) return program.error();
+  result.program = std::move(*program);
+  return result;
 }
 
 }  // namespace burin::nc

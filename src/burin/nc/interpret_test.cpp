@@ -152,7 +152,7 @@ TEST(Interpret, RefusesWhatItWouldMisread) {
       {"G71 Q100 D.5", 1, 1, ErrorCode::unsupported},
       {"G5.2 P1 L4", 1, 1, ErrorCode::unsupported},
       {"G106.2 P10", 1, 1, ErrorCode::unsupported},
-      {"G93 G1 X1 F1", 1, 1, ErrorCode::unsupported},
+      {"G95 G1 X1 F1", 1, 1, ErrorCode::unsupported},
       {"G999", 1, 1, ErrorCode::unsupported},
       {"M98 P100", 1, 1, ErrorCode::unsupported},
       {"G54\nG55", 2, 1, ErrorCode::unsupported},

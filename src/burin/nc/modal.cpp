@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "burin/base/text.h"
+#include "burin/kinematics/joint_path.h"
 #include "burin/nc/arc.h"
 #include "burin/nc/place.h"
 
@@ -12,6 +13,8 @@ namespace {
 
 constexpr double kMmPerInch = 25.4;
 constexpr std::array<char, 3> kAxis = {'X', 'Y', 'Z'};
+constexpr double kMaxInverseTime = 1e9;  // F of G93: a tenth of a microsecond
+constexpr double kMaxRotary = 2e6 * geom::kPi;
 
 }  // namespace
 
@@ -136,6 +139,11 @@ Result<void> ModalMachine::modes() {
     default:
       break;
   }
+  // F changes its meaning with the mode: what was in force is in force no more.
+  if (const int code = words_.code(Group::feed_mode); code >= 0 && (code == 9300) != state_.inverse_time) {
+    state_.inverse_time = code == 9300;
+    state_.feed = 0;
+  }
   if (const int code = words_.code(Group::distance); code >= 0) state_.incremental = code == 9100;
   if (const int code = words_.code(Group::arc_distance); code >= 0)
     state_.arc_centers_absolute = code == 9010;
@@ -159,6 +167,12 @@ Result<void> ModalMachine::work_offset() {
 }
 
 Result<void> ModalMachine::feed_and_speed() {
+  times_.reset();
+  if (const Word* word = state_.inverse_time ? take('F') : nullptr) {
+    if (!(word->value > 0) || word->value > kMaxInverseTime)
+      return error(ErrorCode::range, "F" + format_shortest(word->value) + " under G93 (above 0)", word);
+    times_ = word->value;
+  }
   if (const Word* word = take('F')) {
     if (!(word->value >= 0) || word->value * scale() > kMaxCoordinate_mm)
       return error(ErrorCode::range, "a feed of " + format_shortest(word->value) + " (above 0)", word);
@@ -241,16 +255,39 @@ Result<void> ModalMachine::dwell() {
 
 /// Axes that a three-axis path does not have: 0 is where they are.
 Result<void> ModalMachine::rotary() {
+  turned_ = false;
+  rotary_before_ = state_.rotary;
   for (char letter : {'A', 'B', 'C', 'U', 'V', 'W'}) {
     const Word* word = take(letter);
-    if (word && word->value != 0)
-      return error(ErrorCode::unsupported, std::string("the axis ") + letter + " (X, Y and Z)", word);
+    if (!word) continue;
+    const int axis = rotary_axis(letter);
+    if (axis < 0) {
+      if (word->value != 0)
+        return error(ErrorCode::unsupported,
+                     std::string("the axis ") + letter +
+                         (options_.machine ? " (the axes of machine " + options_.machine->machine().name + ")"
+                                           : " (X, Y and Z)"),
+                     word);
+      continue;
+    }
+    double& at = state_.rotary[static_cast<std::size_t>(axis)];
+    const double to = geom::radians(word->value) + (state_.incremental ? at : 0);
+    if (!(std::abs(to) <= kMaxRotary))
+      return error(ErrorCode::range, std::string(1, letter) + " beyond a million turns (less)", word);
+    at = to;
+    turned_ = true;
   }
   return {};
 }
 
+int ModalMachine::rotary_axis(char letter) const {
+  for (int i = 0; options_.machine && i < options_.machine->rotary_count(); ++i)
+    if (options_.machine->rotary_axis(i).letter == letter) return i;
+  return -1;
+}
+
 bool ModalMachine::has_axis_words() const {
-  return words_.value('X') || words_.value('Y') || words_.value('Z');
+  return turned_ || words_.value('X') || words_.value('Y') || words_.value('Z');
 }
 bool ModalMachine::has_arc_words() const {
   return words_.value('I') || words_.value('J') || words_.value('K') || words_.value('R');
@@ -292,7 +329,8 @@ Result<void> ModalMachine::move() {
   if (state_.motion == MotionMode::none) {
     const Word* first = words_.value('X')   ? words_.value('X')
                         : words_.value('Y') ? words_.value('Y')
-                                            : words_.value('Z');
+                        : words_.value('Z') ? words_.value('Z')
+                                            : &block_->words.front();
     return error(ErrorCode::syntax, "coordinates without a motion code before them (G0, G1, G2 or G3)",
                  first);
   }
@@ -370,11 +408,40 @@ Result<void> ModalMachine::straight_move() {
   auto end = take_target();
   if (!end) return end.error();
   if (state_.motion == MotionMode::rapid) {
-    add_motion(cl::Rapid{cl::Pose{*end}}, *end);
+    add_motion(cl::Rapid{pose(*end)}, *end);
     return {};
   }
+  if (state_.inverse_time)
+    if (auto ok = timed_feed(way_to(*end), word); !ok) return ok;
   if (auto ok = may_feed(word); !ok) return ok;
-  add_motion(cl::Feed{cl::Pose{*end}}, *end);
+  add_motion(cl::Feed{pose(*end)}, *end);
+  return {};
+}
+
+kinematics::Joints ModalMachine::joints() const {
+  return {{state_.position.x, state_.position.y, state_.position.z}, state_.rotary};
+}
+
+cl::Pose ModalMachine::pose(const geom::Point3& position) const {
+  if (!options_.machine) return {position};
+  return options_.machine->forward({{position.x, position.y, position.z}, state_.rotary});
+}
+
+/// Length of the tip's way on the part from where the axes stand before this block.
+double ModalMachine::way_to(const geom::Point3& end) const {
+  if (!options_.machine) return geom::distance(state_.position, end);
+  kinematics::Joints from = joints();
+  from.rotary = rotary_before_;
+  return kinematics::tip_motion(*options_.machine, from, {{end.x, end.y, end.z}, state_.rotary}).length;
+}
+
+/// G93: the feed that takes a way of `length` in the time the block says.
+Result<void> ModalMachine::timed_feed(double length, const Word* word) {
+  if (!times_) return error(ErrorCode::syntax, "a feed move without F under G93 (F in every block)", word);
+  // A tip that stands still has no feed of its own: the time of a millimetre then.
+  const double feed = *times_ * (length > 0 ? length : 1.0);
+  if (feed != state_.feed) add(cl::FeedRate{feed});
+  state_.feed = feed;
   return {};
 }
 
@@ -399,9 +466,14 @@ Result<void> ModalMachine::arc_move() {
   auto radius = take_length('R');
   if (!radius) return radius.error();
   arc.radius = *radius;
-  if (auto ok = may_feed(word); !ok) return ok;
+  if (state_.rotary != std::array<double, 2>{})
+    return error(ErrorCode::unsupported, "an arc while a rotary axis is turned (lines, or rotary axes at 0)",
+                 word);
   auto made = make_arc(arc);
   if (!made) return error(made.error().code, made.error().message, word);
+  if (state_.inverse_time)
+    if (auto ok = timed_feed(cl::arc_length(arc.start, *made), word); !ok) return ok;
+  if (auto ok = may_feed(word); !ok) return ok;
   const geom::Point3 to = made->to.tip;
   add_motion(*std::move(made), to);
   return {};
@@ -416,7 +488,7 @@ Result<void> ModalMachine::reference_return() {
   const geom::Point3 before = state_.position;
   auto via = take_target();
   if (!via) return via.error();
-  if (*via != before) add_motion(cl::Rapid{cl::Pose{*via}}, *via);
+  if (*via != before) add_motion(cl::Rapid{pose(*via)}, *via);
   take('P');
   for (std::size_t i = 0; i < 3; ++i) lost_[i] = lost_[i] || !any || named[i];
   note_lost(word);

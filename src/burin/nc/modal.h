@@ -43,6 +43,8 @@ class ModalMachine {
   Result<geom::Point3> target(const std::array<const Word*, 3>& axes, geom::Point3 from);
   /// Error when no feed is in force or an axis stands at a place only the machine knows.
   Result<void> may_feed(const Word* word) const;
+  /// Where the axes stand.
+  kinematics::Joints joints() const;
   /// The tool moves: notes the unit assumed.
   void add_motion(cl::Record record, const geom::Point3& end);
   void move_to(const geom::Point3& end);
@@ -77,6 +79,10 @@ class ModalMachine {
   Result<void> move();
   Result<void> high_precision();
   Result<geom::Point3> take_target();
+  cl::Pose pose(const geom::Point3& position) const;
+  double way_to(const geom::Point3& end) const;
+  int rotary_axis(char letter) const;
+  Result<void> timed_feed(double length, const Word* word);
   Result<void> straight_move();
   Result<void> arc_move();
   Result<void> reference_return();
@@ -100,7 +106,10 @@ class ModalMachine {
   cl::Beam beam_;
   cl::Coolant coolant_;
   std::optional<int> offset_;
-  std::array<bool, 3> lost_{};  // axes at a place of the machine
+  std::optional<double> times_;            // F of this block under G93, 1/min
+  std::array<double, 2> rotary_before_{};  // this block
+  bool turned_ = false;                    // this block names a rotary axis
+  std::array<bool, 3> lost_{};             // axes at a place of the machine
   bool units_known_ = false, moved_ = false, ended_ = false, has_name_ = false, any_record_ = false;
   bool began_with_feed_ = false;
 };

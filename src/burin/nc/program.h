@@ -14,6 +14,7 @@
 #include "burin/base/diagnostics.h"
 #include "burin/base/result.h"
 #include "burin/cl/program.h"
+#include "burin/kinematics/kinematics.h"
 
 namespace burin::nc {
 
@@ -78,10 +79,12 @@ struct ModalState {
   bool inch = false;
   bool incremental = false;
   bool arc_centers_absolute = false;  ///< G90.1
+  bool inverse_time = false;          ///< G93
   double feed = 0;                    ///< mm/min
   double spindle_or_power = 0;        ///< S word
   int tool = 0;
-  geom::Point3 position;  ///< mm
+  geom::Point3 position;           ///< mm
+  std::array<double, 2> rotary{};  ///< of the machine's rotary axes, radians
 };
 
 struct InterpretOptions {
@@ -95,13 +98,27 @@ struct InterpretOptions {
   /// Largest difference between start and end radius of an arc before it is an error, mm (LinuxCNC's limit).
   double arc_radius_tolerance_mm = 0.0127;
   geom::Point3 start;
+  /// A machine with rotary axes: their letters are read (degrees), X, Y, Z are its joints, and the poses are
+  /// where that brings tip and axis in the part frame. Without one they have to stay at 0. Must outlive the
+  /// call.
+  const kinematics::Kinematics* machine = nullptr;
 };
 
-/// G0 G1 G2 G3 (I J K, R), G4, G17-G19, G20 G21, G90 G91 (and .1), G94, M0-M9, M30, F S T,
-/// G40/G49/G54/G61/G64/G80 and the like that do not change where the tool goes. `source` of the records is
-/// the line. Errors: codes that would move the tool in a way not understood (unsupported), damaged blocks
-/// (syntax), impossible arcs (geometry), all with line and column.
+/// G0 G1 G2 G3 (I J K, R), G4, G17-G19, G20 G21, G90 G91 (and .1), G93 (becomes mm/min of the tip) G94,
+/// M0-M9, M30, F S T, G40/G49/G54/G61/G64/G80 and the like that do not change where the tool goes. `source`
+/// of the records is the line. Errors: codes that would move the tool in a way not understood (unsupported),
+/// damaged blocks (syntax), impossible arcs (geometry), all with line and column.
 Result<cl::Program> interpret(std::string_view text, const InterpretOptions& options,
                               Diagnostics& diagnostics);
+
+/// What the machine does: joints[i] belongs to motion i of the program (they run linearly from one to the
+/// next but for arcs).
+struct JointProgram {
+  cl::Program program;
+  std::vector<kinematics::Joints> joints;
+};
+/// Precondition: options.machine.
+Result<JointProgram> interpret_joints(std::string_view text, const InterpretOptions& options,
+                                      Diagnostics& diagnostics);
 
 }  // namespace burin::nc

@@ -133,6 +133,11 @@ std::vector<Key> keys() {
       {"arc_max_radius_mm", number(&D::arc_max_radius_mm, 1, 1e6)},
       {"min_arc_sweep_deg", number(&D::min_arc_sweep_deg, 0, 90)},
       {"arc_helix", flag(&D::arc_helix)},
+      {"rotary_axes", flag(&D::rotary_axes)},
+      {"inverse_time", text(&D::inverse_time)},
+      {"per_minute", text(&D::per_minute)},
+      {"inverse_time_decimals", integer(&D::inverse_time_decimals, 0, 6)},
+      {"feed_of_linear_only", flag(&D::feed_of_linear_only)},
   };
 }
 

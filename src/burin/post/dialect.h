@@ -48,7 +48,13 @@ struct Dialect {
   double arc_min_radius_mm = 0.0;    ///< smaller arcs are rejected or ignored: they go out as lines
   double arc_max_radius_mm = 99999;  ///< larger ones are computed too coarsely: they go out as lines
   double min_arc_sweep_deg = 0.0;    ///< shorter arcs go out as lines where that stays within a decimal
-  bool arc_helix = true;             ///< false: helices go out as lines
+  bool rotary_axes = true;           ///< false: X, Y and Z only
+  std::string inverse_time = "G93", per_minute = "G94";  ///< inverse_time empty: the control has none
+  int inverse_time_decimals = 4;                         ///< of F under inverse time, 1/min
+  /// What F counts in a G94 block that moves rotary axes too: true: the linear axes only (degrees when none
+  /// moves); false: mm and degrees together.
+  bool feed_of_linear_only = true;
+  bool arc_helix = true;  ///< false: helices go out as lines
 };
 
 /// The dialects that come with burin, sorted by name.

@@ -9,6 +9,7 @@
 #include "burin/base/diagnostics.h"
 #include "burin/base/result.h"
 #include "burin/cl/program.h"
+#include "burin/kinematics/joint_path.h"
 #include "burin/post/dialect.h"
 
 namespace burin::post {
@@ -37,5 +38,20 @@ struct NcText {
 /// no word for, Z changes with write_z false, invalid programs.
 Result<NcText> emit(const cl::Program& program, const Dialect& dialect, const EmitOptions& options,
                     Diagnostics& diagnostics);
+
+enum class FeedMode {
+  inverse_time,  ///< G93: each block says its time
+  per_minute,    ///< G94: an F in each block that gives the tip the feed, as the dialect counts distance
+};
+
+struct JointEmitOptions : EmitOptions {
+  FeedMode feed = FeedMode::inverse_time;
+};
+
+/// The same for joint moves (make_joint_path of the same program): axis letters and travel are the machine's.
+/// Errors as above, and (unsupported) a dialect without G93, a feed mode that cannot say a move's time.
+Result<NcText> emit_joints(const cl::Program& program, const kinematics::Kinematics& machine,
+                           const kinematics::JointPath& path, const Dialect& dialect,
+                           const JointEmitOptions& options, Diagnostics& diagnostics);
 
 }  // namespace burin::post

@@ -135,10 +135,11 @@ Result<Plan> make_plan(const std::vector<Stretch>& stretches, const Limits& limi
   plan.pieces = track.pieces;
   const double rounding = rounding_of(track);
   constexpr int kRounds = 40;  // each slows the runs that meet; few are ever needed
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0;; ++round) {
     if (auto fine = assemble(plan, track, planners); !fine) return fine.error();
     const auto bad = offenders(plan, rounding);
     if (bad.empty()) break;
+    if (round == kRounds) return limits_too_low();
     for (const auto& [run, ratio] : bad) {
       const double factor = std::clamp(std::cbrt(ratio) * 1.001, 1.001, 2.0);
       if (auto fine = planners[run].slow_down(factor); !fine) return fine.error();

@@ -15,6 +15,7 @@ namespace {
 constexpr double kAim = 0.999;
 constexpr int kRounds = 12;      ///< of lowering where a limit was passed, then the whole run is slowed
 constexpr int kSlowRounds = 80;  ///< of that
+constexpr int kMissRounds = 8;   ///< of it while only the end is missed
 constexpr int kSettle = 8;       ///< rounds to meet the end
 /// An arc between two setpoints this much longer than its chord is more than a bend of 2 rad.
 constexpr double kSkip = 1.4;
@@ -23,6 +24,9 @@ constexpr double kSkip = 1.4;
 /// not used up long before the profile.
 constexpr double kMissed = 1e-3, kEarly = 0.1;
 constexpr int kSkipRounds = 6;
+/// Turn of a chord, rad, that the first guess of the chords' length reckons with: the largest curvature of a
+/// cell says nothing about the whole of it where it is the tip of a cusp.
+constexpr double kMostTurn = 1;
 /// Share of the acceleration and jerk that stays for changes of feed where the path is curved; both others
 /// are tried.
 constexpr double kReserve = 0.3;
@@ -170,6 +174,8 @@ RunPlanner::Passage RunPlanner::walk(bool measure_chords) {
   const double t = limits_.period_s;
   const double accel = 1 / (limits_.accel_mm_s2 * t * t + 4 * rounding_);
   const double jerk = 1 / (limits_.jerk_mm_s3 * t * t * t + 8 * rounding_);
+  constexpr double kSpeedRounding = 1e-6;  // of the profile, when it is fitted to the chords
+  const double speed = 1 / (limits_.axis_velocity_mm_s * t * (1 + kSpeedRounding) + 2 * rounding_);
   Cursor at = start_of(pieces[run_.first], run_.first);
   const Cursor goal{run_.end - 1, 1, {last.end[0], last.end[1], last.end[2]}};
   Cursor old[3] = {at, at, at};
@@ -203,9 +209,10 @@ RunPlanner::Passage RunPlanner::walk(bool measure_chords) {
     }
     double ratio = chord_ratio(old[0], at);
     for (int k = 0; k < 3; ++k) {
+      const double first = at.p[k] - old[0].p[k];
       const double second = at.p[k] - 2 * old[0].p[k] + old[1].p[k];
       const double third = at.p[k] - 3 * (old[0].p[k] - old[1].p[k]) - old[2].p[k];
-      ratio = std::max({ratio, std::abs(second) * accel, std::abs(third) * jerk});
+      ratio = std::max({ratio, std::abs(first) * speed, std::abs(second) * accel, std::abs(third) * jerk});
     }
     found.worst = std::max(found.worst, ratio);
     keys[3] = keys[2];
@@ -277,9 +284,10 @@ Result<void> RunPlanner::plan() {
   cells_ = make_cells(track_, run_, aim_);
   double s = 0;
   for (Cell& c : cells_) {
-    const double v = cell_limit(c, aim_, 3 * aim_.period_s, kReserve).v * aim_.period_s * c.curvature;
+    const double chord = cell_limit(c, aim_, 3 * aim_.period_s, kReserve).v * aim_.period_s;
+    const double turn = std::min(chord * c.curvature, kMostTurn);
     c.s0 = s;
-    c.s1 = s += c.length / (1 + v * v / 24);
+    c.s1 = s += c.length / (1 + turn * turn / 24);
   }
   total_ = s;
   choose();
@@ -293,19 +301,25 @@ Result<void> RunPlanner::plan() {
   return slow_down(1.02);
 }
 
+Error limits_too_low() {
+  return Error{ErrorCode::geometry,
+               "the limits cannot be kept: at this period they are below the rounding of the coordinates (a "
+               "longer period, or higher limits)",
+               {}};
+}
+
 Result<void> RunPlanner::slow_down(double factor) {
   for (int round = 0; round < kSlowRounds; ++round) {
     stretch_ *= factor;
     if (auto made = make(); !made) return made;
     const auto passage = settle();
     if (!passage) return passage.error();
-    if (acceptable(*passage, kEarly, false)) return {};
+    // Slower is no better where only the end is missed: the tool waits there for the rest of the profile, or
+    // the last step is longer, and the setpoints keep the limits either way.
+    if (acceptable(*passage, kEarly, false) || (round >= kMissRounds && passage->worst <= 1)) return {};
     factor = std::clamp(std::sqrt(passage->worst), 1.02, 1.5);
   }
-  return Error{ErrorCode::geometry,
-               "the limits cannot be kept: at this period they are below the rounding of the coordinates (a "
-               "longer period, or higher limits)",
-               {}};
+  return limits_too_low();
 }
 
 }  // namespace burin::servo

@@ -54,4 +54,7 @@ class RunPlanner {
   double rounding_ = 0;  ///< of a coordinate of the run, mm
 };
 
+/// That no feed, however slow, keeps the limits.
+Error limits_too_low();
+
 }  // namespace burin::servo

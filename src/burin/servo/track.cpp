@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "burin/base/text.h"
+#include "burin/geom/gauss.h"
 #include "burin/servo/cursor.h"
 
 namespace burin::servo {
@@ -24,6 +26,8 @@ constexpr double kStopAngle = 0.02;
 /// shorter than the slowest step; so that x is nearly the arc length, and sharp bends stand alone.
 constexpr double kEven = 1.25;
 constexpr double kTurn = 0.5;
+/// Turn of a part beyond which its end is nearer to what comes before than its middle: a hairpin.
+constexpr double kBack = std::numbers::pi / 2;
 constexpr int kMaxHalvings = 20;
 /// Derivatives shorter than this, relative to the coefficients, have no direction left.
 constexpr double kVanishing = 1e-7;
@@ -181,6 +185,45 @@ Shape shape_of(const Piece& piece, double x0, double x1) {
           low > 0 ? high / low : 1e300};
 }
 
+void append(Track& track, const Piece& piece, double x0, double x1, double length, double feed) {
+  Piece part = x0 == 0 && x1 == 1 ? piece : part_of(piece, x0, x1);
+  if (x0 > 0)
+    for (int k = 0; k < 3; ++k) part.c[k][0] = track.pieces.back().end[k];
+  part.length = length;
+  track.pieces.push_back(part);
+  track.feed.push_back(feed);
+}
+
+/// Where the path stops going the way it had at x0; it does not at x1.
+double turning_point(const Piece& piece, double x0, double x1) {
+  const Vec3 way = velocity(piece, x0);
+  double lo = x0, hi = x1;
+  for (;;) {
+    const double mid = 0.5 * (lo + hi);
+    if (!(mid > lo && mid < hi)) return hi;
+    (geom::dot(velocity(piece, mid), way) > 0 ? lo : hi) = mid;
+  }
+}
+
+/// A part shorter than the slowest step in which the path turns back: the stop is at the tip of the hairpin.
+/// Behind it the distance from setpoints before decreases, and no chord would meet the end of the part.
+void add_hairpin(Track& track, const Piece& piece, double x0, double x1, double length, double feed) {
+  const double tip = turning_point(piece, x0, x1);
+  const double before = arc_length(piece, x0, tip), after = arc_length(piece, tip, x1);
+  if (before < kSamePoint) {
+    if (!track.pieces.empty()) track.pieces.back().rest_after = true;
+    return append(track, piece, x0, x1, length, feed);
+  }
+  if (after < kSamePoint) {
+    append(track, piece, x0, x1, length, feed);
+    track.pieces.back().rest_after = true;
+    return;
+  }
+  append(track, piece, x0, tip, before, feed);
+  track.pieces.back().rest_after = true;
+  append(track, piece, tip, x1, after, feed);
+}
+
 /// Appends [x0, x1] of the piece, halved as far as needed.
 void add_parts(Track& track, const Piece& piece, double x0, double x1, double feed, double shortest,
                int depth) {
@@ -192,13 +235,9 @@ void add_parts(Track& track, const Piece& piece, double x0, double x1, double fe
     add_parts(track, piece, x0, mid, feed, shortest, depth + 1);
     return add_parts(track, piece, mid, x1, feed, shortest, depth + 1);
   }
-  Piece part = x0 == 0 && x1 == 1 ? piece : part_of(piece, x0, x1);
-  if (x0 > 0)
-    for (int k = 0; k < 3; ++k) part.c[k][0] = track.pieces.back().end[k];
-  part.length = length;
-  part.rest_after = shape.turn > kTurn;  // a cusp, or all but one
-  track.pieces.push_back(part);
-  track.feed.push_back(feed);
+  if (shape.turn > kBack) return add_hairpin(track, piece, x0, x1, length, feed);
+  append(track, piece, x0, x1, length, feed);
+  track.pieces.back().rest_after = shape.turn > kTurn;  // a corner, or all but one
 }
 
 Result<void> add_stretch(Track& track, const Stretch& stretch, const Limits& limits) {
@@ -269,14 +308,7 @@ ArcDerivatives arc_derivatives(const Piece& piece, double x) {
 }
 
 double arc_length(const Piece& piece, double x0, double x1) {
-  constexpr double node[3] = {0, 0.53846931010568309, 0.90617984593866399};
-  constexpr double weight[3] = {0.56888888888888889, 0.47862867049936647, 0.23692688505618909};
-  const double mid = 0.5 * (x0 + x1), half = 0.5 * (x1 - x0);
-  double sum = weight[0] * geom::norm(velocity(piece, mid));
-  for (int i = 1; i < 3; ++i)
-    sum += weight[i] * (geom::norm(velocity(piece, mid - half * node[i])) +
-                        geom::norm(velocity(piece, mid + half * node[i])));
-  return half * sum;
+  return geom::gauss5([&piece](double x) { return geom::norm(velocity(piece, x)); }, x0, x1);
 }
 
 Junction junction(const Piece& before, const Piece& after) {

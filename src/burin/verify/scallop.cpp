@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/point_tools.h"
 #include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
 #include "burin/verify/sweep.h"
@@ -21,6 +22,9 @@ constexpr int kAcross = 24;
 // not a smooth top: its height is as wrong as its place times the slope there, side step / (2 R).
 constexpr int kNarrow = 30;
 
+// A ball that runs over the edge of the surface stands beside its foot by more than this part of its radius.
+constexpr double kBeside = 1e-3;
+
 // An end of a stretch counts as abreast when the way to it is square to the path within this (cosine).
 constexpr double kSquare = 0.02;
 
@@ -29,10 +33,6 @@ struct Station {
   Vec3 along;  ///< unit
   geom::SurfacePoint foot;
 };
-
-bool finite(Point3 p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// Every chord of a pass.
 template <class Each>
@@ -154,10 +154,8 @@ class Measure {
     Abreast best;
     double least = std::numeric_limits<double>::infinity();
     for_chords(pass, [&](Point3 tip_a, Point3 tip_b) {
-      const Point3 a = center_of(tip_a, options_.radius_mm);
-      const Vec3 d = tip_b - tip_a;
-      const double l2 = dot(d, d);
-      const Point3 p = a + (l2 > 0 ? std::clamp(dot(from.center - a, d) / l2, 0.0, 1.0) : 0.0) * d;
+      const Point3 p = nearest_on_segment(from.center, center_of(tip_a, options_.radius_mm),
+                                          center_of(tip_b, options_.radius_mm));
       const double far = distance(p, from.center);
       if (far < least) {
         least = far;
@@ -193,11 +191,19 @@ class Measure {
     if (!any) return ridge;
     for (const Station& a : from) {
       const Abreast next = nearest_on(to, a);
-      const double h = highest(a.foot, finder_.find(next.center, 1e-6));
-      if (next.square) ridge.min_mm = std::min(ridge.min_mm, h);
+      const geom::SurfacePoint foot = finder_.find(next.center, 1e-6);
+      const double h = highest(a.foot, foot);
+      if (next.square && over_surface(a.center, a.foot) && over_surface(next.center, foot))
+        ridge.min_mm = std::min(ridge.min_mm, h);
       ridge.max_mm = std::max(ridge.max_mm, h);
     }
     return ridge;
+  }
+
+  /// Nearest to the ball is a place of the surface, not of its edge.
+  bool over_surface(Point3 center, const geom::SurfacePoint& foot) {
+    const Vec3 n = geom::normal(evaluator_.derivatives(foot.u, foot.v)), way = center - foot.point;
+    return norm(n) == 0 || norm(way - dot(way, n) * n) <= kBeside * options_.radius_mm;
   }
 
   /// The highest place on the line between two feet (straight in the parameters).
@@ -241,7 +247,7 @@ ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vect
   bool usable = geom::validate(surface).ok() && options.radius_mm > 0 && std::isfinite(options.radius_mm) &&
                 std::isfinite(options.stock_mm) && std::isfinite(options.spacing_mm) && !passes.empty();
   for (const TipPass& pass : passes)
-    for_chords(pass, [&](Point3 a, Point3 b) { usable = usable && finite(a) && finite(b); });
+    for_chords(pass, [&](Point3 a, Point3 b) { usable = usable && is_finite(a) && is_finite(b); });
   if (!usable) return {};
   return Measure(surface, passes, options).run();
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "burin/geom/curve/nurbs.h"
+#include "burin/geom/gauss.h"
 
 namespace burin::geom {
 namespace {
@@ -75,16 +76,8 @@ EllipseArc2 as_ellipse(const Arc2& a) {
 /// Arc length by adaptive Gauss-Legendre (5 points against 2 x 5): `f` is the speed.
 template <class F>
 double integrate(const F& f, double a, double b, double tolerance, int depth) {
-  static constexpr double kX[] = {0, 0.5384693101056831, 0.9061798459386640};
-  static constexpr double kW[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
-  const auto gauss = [&](double lo, double hi) {
-    const double m = 0.5 * (lo + hi), h = 0.5 * (hi - lo);
-    double sum = kW[0] * f(m);
-    for (int i = 1; i < 3; ++i) sum += kW[i] * (f(m - h * kX[i]) + f(m + h * kX[i]));
-    return h * sum;
-  };
   const double m = 0.5 * (a + b);
-  const double whole = gauss(a, b), halves = gauss(a, m) + gauss(m, b);
+  const double whole = gauss5(f, a, b), halves = gauss5(f, a, m) + gauss5(f, m, b);
   if (depth >= 40 || std::abs(whole - halves) <= tolerance) return halves;
   return integrate(f, a, m, 0.5 * tolerance, depth + 1) + integrate(f, m, b, 0.5 * tolerance, depth + 1);
 }

@@ -11,7 +11,8 @@
 
 namespace burin::geom {
 
-/// A closed chain of edges that only one triangle has.
+/// A closed chain of edges that only one triangle has. (Beside edges that many triangles share it may be
+/// open: then its last point is not its first neighbour.)
 struct MeshHole {
   std::vector<Point3> points;
   Box3 box;
@@ -28,14 +29,19 @@ struct MeshReport {
 };
 MeshReport examine(const Mesh& mesh);
 
-/// Vertices nearer than `tolerance_mm` become one, triangles without area go, the rest keeps its order.
+/// In their order, vertices no farther than `tolerance_mm` from one that stays become that one (0: the same
+/// place). Triangles that lose a corner go, and of triangles with the same corners one stays, none when they
+/// face each other; the rest keeps its order. Triangles without area but with three corners stay: they close
+/// the mesh.
 Mesh welded(const Mesh& mesh, double tolerance_mm);
-/// Turns triangles so that neighbours agree and every closed shell has its outside outwards. False when that
-/// is impossible (a Moebius strip, edges shared by many).
+/// Turns triangles so that neighbours agree and every outermost shell has its outside outwards; a shell
+/// within keeps its sense against the outermost one (hollows stay hollow). False, and the mesh as it was,
+/// when that is impossible (a Moebius strip, edges shared by many).
 bool orient(Mesh& mesh);
 
 /// For each corner of each triangle the mean of the normals around its vertex, weighted by angle, over the
 /// fan of triangles that meet across edges bent by less than `crease_rad`; a crease keeps one normal a side.
+/// Triangles too low to have a normal of their own are looked through; (0, 0, 0) where there are only such.
 std::vector<std::array<Vec3, 3>> corner_normals(const Mesh& mesh, double crease_rad);
 
 }  // namespace burin::geom

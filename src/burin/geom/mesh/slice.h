@@ -23,8 +23,22 @@ struct SliceLoop {
   std::vector<SlicePoint> points;
   bool closed = false;  ///< open where the mesh has a hole
 };
-/// In a fixed order: by the lowest triangle number. Vertices exactly in the plane count as lying above it, so
-/// that a plane through an end face gives the loop just inside or nothing, never a broken one.
+/// In a fixed order: by the lowest triangle number; closed loops begin there. An open one has the place where
+/// it ends as its last point. Points at the same place are one. Vertices exactly in the plane count as lying
+/// above it, so that a plane through an end face gives the loop just inside or nothing, never a broken one.
 std::vector<SliceLoop> slice_x(const Mesh& mesh, const std::vector<std::array<Vec3, 3>>& normals, double x);
+
+/// The same for many planes: knows which triangles may cross one. Keeps references to mesh and normals.
+class Slicer {
+ public:
+  Slicer(const Mesh& mesh, const std::vector<std::array<Vec3, 3>>& normals);
+  std::vector<SliceLoop> at(double x) const;
+
+ private:
+  const Mesh* mesh_;
+  const std::vector<std::array<Vec3, 3>>* normals_;
+  double lo_ = 0, scale_ = 0;                ///< bin of x: (x - lo) * scale
+  std::vector<std::uint32_t> start_, list_;  ///< triangles that reach into each bin
+};
 
 }  // namespace burin::geom

@@ -13,6 +13,14 @@ int span_at(const std::vector<double>& knots, int degree, int count, double t, S
   return static_cast<int>(std::lower_bound(first, last, t) - knots.begin()) - 1;
 }
 
+std::vector<double> spans_in(const std::vector<double>& knots, Interval t) {
+  std::vector<double> at{t.lo};
+  for (const double knot : knots)
+    if (knot > at.back() && knot < t.hi) at.push_back(knot);
+  at.push_back(t.hi);
+  return at;
+}
+
 void basis_derivatives(const std::vector<double>& knots, int degree, int span, double t, int order,
                        Basis& out) {
   constexpr int kSize = kMaxSurfaceDegree + 1;

@@ -20,6 +20,9 @@ inline double clamped(const std::vector<double>& knots, double t) {
 /// find_span for Side::right; for Side::left the span that ends at t when t is an inner knot.
 int span_at(const std::vector<double>& knots, int degree, int count, double t, Side side);
 
+/// Ends of the spans within t: t.lo, the knots between, t.hi.
+std::vector<double> spans_in(const std::vector<double>& knots, Interval t);
+
 /// value[k][j]: k-th derivative of N_{span - degree + j} at t, k = 0..order. The NURBS Book, A2.3.
 struct Basis {
   std::array<std::array<double, kMaxSurfaceDegree + 1>, kMaxOrder + 1> value;

@@ -13,6 +13,11 @@ constexpr int kMaxSteps = 60;     // of Newton in one part
 constexpr int kMaxParts = 64;     // that one search may cross
 constexpr int kMaxHalvings = 40;  // of a step
 
+constexpr double kRounding = 1e-15;  // of the square of the distance, relative
+constexpr double kFall = 1e-14;      // what it must fall by to be worth another part
+constexpr double kConvex = 1e-14;  // determinants of the second derivative this small (relative) are rounding
+constexpr double kBend = 1e-3;     // below this share of |S'|^2 a second derivative makes wild steps
+
 struct Part {
   std::size_t iu = 0, iv = 0;  // between walls i and i + 1
 };
@@ -69,7 +74,7 @@ class Local {
     if (held_v) return {one(gu, auu, dot(x.r, x.d.duu)), 0};
     if (held_u) return {0, one(gv, avv, dot(x.r, x.d.dvv))};
     const double huu = auu + dot(x.r, x.d.duu), huv = auv + dot(x.r, x.d.duv), hvv = avv + dot(x.r, x.d.dvv);
-    if (const double det = huu * hvv - huv * huv; huu > 0 && det > 1e-14 * huu * hvv) {
+    if (const double det = huu * hvv - huv * huv; huu > 0 && det > kConvex * huu * hvv) {
       return {-(hvv * gu - huv * gv) / det, -(huu * gv - huv * gu) / det};
     }
     return {one(gu, auu, 0), one(gv, avv, 0)};
@@ -88,7 +93,7 @@ class Local {
         const Place y = at(part, a, b);
         if (!(y.f < x.f)) continue;
         // Enough when the square of the distance falls by rounding only.
-        moved = y.f < x.f * (1 - 1e-15);
+        moved = y.f < x.f * (1 - kRounding);
         x = y;
         break;
       }
@@ -112,7 +117,7 @@ class Local {
       const Step s = step(next, y);
       if (s.u == 0 && s.v == 0) continue;
       const Place z = minimise(next, x.u, x.v);
-      if (!(z.f < x.f * (1 - 1e-14))) continue;
+      if (!(z.f < x.f * (1 - kFall))) continue;
       part = next;
       return true;
     }
@@ -123,7 +128,7 @@ class Local {
   /// In one direction: Newton, or Gauss-Newton when the second derivative is not clearly positive.
   static double one(double g, double a, double r2) {
     const double h = a + r2;
-    if (h > 1e-3 * a && h > 0) return -g / h;
+    if (h > kBend * a && h > 0) return -g / h;
     return a > 0 ? -g / a : 0;
   }
 

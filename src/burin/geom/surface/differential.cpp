@@ -17,6 +17,12 @@ constexpr double kParallel = 1e-12;
 /// Rounding of a partial derivative, relative to the size of the coordinates over the length of the span (for
 /// which |Suv| / |Su| stands): a derivative below it has no direction.
 constexpr double kRounding = 1e-14;
+/// Uneven weights spoil digits, but seldom all at once: beyond this quotient no more is allowed for.
+constexpr double kMaxSpread = 1e6;
+/// Room for the higher derivatives, which are rounded more.
+constexpr double kRoom = 1e3;
+/// Steps inwards from a place without a normal, in widths of the domain.
+constexpr double kStepsInside[] = {1e-6, 1e-4, 1e-2};
 
 /// Partial derivatives in lengths (times the width of the piece, so that u and v are alike).
 struct Lengths {
@@ -46,7 +52,7 @@ Lengths lengths(const NurbsSurface& s, double u, double v, Side side_u, Side sid
           a * a * d.duu,      a * b * d.duv,
           b * b * d.dvv,      a * a * a * d.duuu,
           a * a * b * d.duuv, a * b * b * d.duvv,
-          b * b * b * d.dvvv, kRounding * degree * reach * std::min(heaviest / lightest, 1e6)};
+          b * b * b * d.dvvv, kRounding * degree * reach * std::min(heaviest / lightest, kMaxSpread)};
 }
 
 /// Su x Sv, k times differentiated in direction (a, b): the first one that does not vanish is the limit.
@@ -56,8 +62,8 @@ Vec3 limit(const Lengths& d, double a, double b) {
   const Vec3 u2 = a * a * d.uuu + (2 * a * b) * d.uuv + b * b * d.uvv;
   const Vec3 v2 = a * a * d.uuv + (2 * a * b) * d.uvv + b * b * d.vvv;
   const double size = std::max({norm(d.u), norm(d.v), norm(u1), norm(v1), norm(u2), norm(v2)});
-  // What rounding of any factor can bring, with room for the higher derivatives, which are rounded more.
-  const double least = 1e3 * d.rounding * size;
+  // What rounding of any factor can bring.
+  const double least = kRoom * d.rounding * size;
   const Vec3 n1 = cross(u1, d.v) + cross(d.u, v1);
   if (norm(n1) > least) return unit(n1);
   const Vec3 n2 = cross(u2, d.v) + 2 * cross(u1, v1) + cross(d.u, v2);
@@ -72,7 +78,7 @@ double inwards(double t, const std::vector<double>& knots) {
 /// Where the normal vector and its derivatives vanish: a look from a small step inside.
 Vec3 from_inside(const NurbsSurface& s, double u, double v, double a, double b) {
   const double width_u = s.domain(Direction::u).length(), width_v = s.domain(Direction::v).length();
-  for (const double step : {1e-6, 1e-4, 1e-2}) {
+  for (const double step : kStepsInside) {
     for (const auto& [x, y] : {Vec2{a, b}, Vec2{a, 0}, Vec2{0, b}}) {
       const Lengths d = lengths(s, u + x * step * width_u, v + y * step * width_v, Side::right, Side::right);
       const Vec3 n = cross(d.u, d.v);

@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 
+#include "burin/geom/surface/basis.h"
 #include "burin/geom/surface/evaluate.h"
 
 namespace burin::geom::detail {
@@ -14,6 +15,9 @@ namespace {
 /// Cuts run on through all neighbours and can go round closed surfaces for ever: no more than this.
 constexpr std::size_t kMaxCuts = 4000;
 constexpr std::size_t kMaxCells = 20000;
+/// Cuts closer than the tolerance are one; as a share of the source's length never below rounding, and in a
+/// source hardly longer than the tolerance never so much that its ends become one.
+constexpr double kLeastNear = 1e-12, kMostNear = 0.1;
 
 /// The cuts of one source in one direction, normalised, with 0 and 1.
 struct Cuts {
@@ -42,7 +46,7 @@ class Cutter {
     for (std::size_t i = 0; i < sources.size(); ++i) {
       for (const Direction d : {Direction::u, Direction::v})
         cuts(static_cast<int>(i), d).near =
-            std::clamp(tolerance / std::max(sources[i].length(d), tolerance), 1e-12, 0.1);
+            std::clamp(tolerance / std::max(sources[i].length(d), tolerance), kLeastNear, kMostNear);
     }
     for (std::size_t k = 0; k < contacts.size(); ++k) {
       of_[static_cast<std::size_t>(contacts[k].a)].push_back(k);
@@ -146,19 +150,11 @@ class Cutter {
   std::size_t added_ = 0, cells_ = 0;
 };
 
-std::vector<double> quadrature_points(const std::vector<double>& knots, Interval t) {
-  std::vector<double> at{t.lo};
-  for (const double knot : knots)
-    if (knot > at.back() && knot < t.hi) at.push_back(knot);
-  at.push_back(t.hi);
-  return at;
-}
-
 /// Gauss, three points a span: it ranks rectangles, nothing else.
 double area_of(SurfaceEvaluator& evaluator, const NurbsSurface& s, Interval u, Interval v) {
   constexpr double x[3] = {0.1127016653792583, 0.5, 0.8872983346207417},
                    w[3] = {5 / 18.0, 8 / 18.0, 5 / 18.0};
-  const std::vector<double> us = quadrature_points(s.knots_u, u), vs = quadrature_points(s.knots_v, v);
+  const std::vector<double> us = spans_in(s.knots_u, u), vs = spans_in(s.knots_v, v);
   double sum = 0;
   for (std::size_t b = 0; b + 1 < vs.size(); ++b) {
     for (std::size_t a = 0; a + 1 < us.size(); ++a) {

@@ -89,12 +89,6 @@ CellGraph make_cells(const std::vector<Source>& sources, const std::vector<Conta
 
 /// A direction of the grid: +x, -x, +y, -y.
 enum class Step { east, west, north, south };
-constexpr Step opposite(Step s) {
-  return s == Step::east    ? Step::west
-         : s == Step::west  ? Step::east
-         : s == Step::north ? Step::south
-                            : Step::north;
-}
 struct Placed {
   int cell = -1;
   Orientation orientation;

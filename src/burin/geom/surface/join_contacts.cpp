@@ -17,6 +17,10 @@ constexpr int kAngleSamples = 5;
 /// Tangent planes that differ by less are one smooth surface when several patches compete for an edge, and a
 /// patch that leaves the edge in the same direction as the other, within this, lies on it. Radians.
 constexpr double kSmooth = 1e-2, kFold = 1e-3;
+/// A derivative across the edge whose part square to it is smaller than this share runs along the edge.
+constexpr double kAlongEdge = 1e-9;
+/// A stretch of a side may share this part of its length with its neighbours.
+constexpr double kSharedEnds = 1e-3;
 /// Edges up to this many tolerances apart are reported.
 constexpr double kNearMiss = 10;
 
@@ -39,7 +43,7 @@ Vec3 inward(const Source& source, SideIndex side, double t) {
   const Vec3 edge = unit(u ? d.dv : d.du);
   const Vec3 cross_edge = at_high_end(side) ? -(u ? d.du : d.dv) : (u ? d.du : d.dv);
   const Vec3 square = cross_edge - dot(cross_edge, edge) * edge;
-  return norm(square) > 1e-9 * norm(cross_edge) ? unit(square) : Vec3{};
+  return norm(square) > kAlongEdge * norm(cross_edge) ? unit(square) : Vec3{};
 }
 
 /// Smooth: everywhere opposite directions. Fold: everywhere the same.
@@ -147,7 +151,7 @@ std::vector<Candidate> candidates(const std::vector<Source>& sources, double tol
 struct Taken {
   std::vector<Interval> intervals;
   bool free(Interval t) const {
-    const double slack = 1e-3 * t.length();
+    const double slack = kSharedEnds * t.length();
     return std::none_of(intervals.begin(), intervals.end(), [&](const Interval& other) {
       return t.lo < other.hi - slack && other.lo < t.hi - slack;
     });

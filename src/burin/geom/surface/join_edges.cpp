@@ -16,6 +16,8 @@ constexpr int kMaxNodes = 4096;  // of one point query: a bound for curves that 
 constexpr int kMinSamples = 33;  // of one comparison
 constexpr int kMaxSamples = 513;
 constexpr int kNewtonSteps = 40;
+/// Of parameters in [0, 1]: half their rounding.
+constexpr double kSameParameter = 1e-16;
 /// A stretch shorter than this many tolerances is a touching point, not an edge.
 constexpr double kShortest = 4;
 /// Rounding of points that are evaluated twice in different ways, relative to their size.
@@ -69,7 +71,7 @@ double foot(const NurbsCurve& curve, Point3 p, double t, double lo, double hi) {
       best_distance = there;
       best = next;
     }
-    if (std::abs(next - t) <= 1e-16) break;
+    if (std::abs(next - t) <= kSameParameter) break;
     t = next;
   }
   return best;

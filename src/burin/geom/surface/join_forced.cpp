@@ -125,6 +125,22 @@ Member map_of(const NurbsSurface& part, Direction d, Interval of_base) {
   return m;
 }
 
+std::optional<Run> common_rows(const Source& base, SideIndex base_side, const Source& partial,
+                               SideIndex partial_side, double tolerance_mm) {
+  const NurbsCurve& a = base.edges[index(base_side)].curve;
+  const NurbsCurve& b = partial.edges[index(partial_side)].curve;
+  const int n = static_cast<int>(a.points.size()), m = static_cast<int>(b.points.size());
+  if (a.degree != b.degree || m > n) return {};
+  for (int first = 0; first + m <= n; ++first) {
+    for (const bool reversed : {false, true}) {
+      if (!same_points(a.points, first, b.points, reversed, tolerance_mm)) continue;
+      if (m == n && same_knots(a, b, reversed)) return {};  // an ordinary contact
+      return Run{first, first + m - 1, reversed};
+    }
+  }
+  return {};
+}
+
 struct Pairing {
   std::size_t partial = 0;
   SideIndex base_side = 0, partial_side = 0;
@@ -156,22 +172,6 @@ std::optional<Pairing> find_pairing(const std::vector<Source>& sources, std::siz
 }
 
 }  // namespace
-
-std::optional<Run> common_rows(const Source& base, SideIndex base_side, const Source& partial,
-                               SideIndex partial_side, double tolerance_mm) {
-  const NurbsCurve& a = base.edges[index(base_side)].curve;
-  const NurbsCurve& b = partial.edges[index(partial_side)].curve;
-  const int n = static_cast<int>(a.points.size()), m = static_cast<int>(b.points.size());
-  if (a.degree != b.degree || m > n) return {};
-  for (int first = 0; first + m <= n; ++first) {
-    for (const bool reversed : {false, true}) {
-      if (!same_points(a.points, first, b.points, reversed, tolerance_mm)) continue;
-      if (m == n && same_knots(a, b, reversed)) return {};  // an ordinary contact
-      return Run{first, first + m - 1, reversed};
-    }
-  }
-  return {};
-}
 
 std::vector<Source> forced_parts(const Source& base, SideIndex base_side, const Run& run,
                                  std::vector<double> partial_knots, double tolerance_mm) {
@@ -206,7 +206,7 @@ std::vector<Source> forced_parts(const Source& base, SideIndex base_side, const 
     parts.push_back(surface_of(std::move(strip.rows), d, base.surface));
     maps.push_back(map_of(parts.back(), d, strip.of_base));
   }
-  const double deviation = distance_to_parts(base.surface, parts, maps, 1e-3 * tolerance_mm);
+  const double deviation = distance_to_parts(base.surface, parts, maps, kNegligible * tolerance_mm);
   std::vector<Source> out;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Source s = source_of(parts[i], base.patch, tolerance_mm);

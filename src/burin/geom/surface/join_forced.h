@@ -15,8 +15,6 @@ struct Run {
   int first = 0, last = 0;
   bool reversed = false;
 };
-std::optional<Run> common_rows(const Source& base, SideIndex base_side, const Source& partial,
-                               SideIndex partial_side, double tolerance_mm);
 
 /// Lower rest (if any), middle, upper rest (if any), with their deviation from the base.
 std::vector<Source> forced_parts(const Source& base, SideIndex base_side, const Run& run,

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
+#include "burin/geom/surface/basis.h"
 #include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
 
@@ -20,19 +22,13 @@ constexpr int kFewSamples = 3;
 constexpr int kLineSamples = 5;
 /// Curvature radii beyond this many sizes of the surface are flat.
 constexpr double kFlat = 1e6;
+/// Of a surface that is a point, mm: so that nothing is divided by 0.
+constexpr double kLeastSize = 1e-9;
 /// Tangents this much shorter than the others are degenerate: no statement about the plane there.
 constexpr double kDegenerate = 1e-7;
 constexpr int kNewtonSteps = 12;
 /// Steps of the search for the maximum between the samples.
 constexpr int kHalvings = 10;
-
-std::vector<double> spans_in(const std::vector<double>& knots, Interval t) {
-  std::vector<double> at{t.lo};
-  for (const double knot : knots)
-    if (knot > at.back() && knot < t.hi) at.push_back(knot);
-  at.push_back(t.hi);
-  return at;
-}
 
 double widest_step(const std::vector<double>& at) {
   double widest = 0;
@@ -58,34 +54,7 @@ double curvature_across(const SurfaceDerivatives& d, Vec3 along) {
   return normal_curvature(d, (p * g - q * f) / det, (q * e - p * f) / det);
 }
 
-}  // namespace
-
-Continuity continuity_along(const NurbsSurface& surface, Direction direction, double at) {
-  const Direction along = other(direction);
-  Continuity found = Continuity::g2;
-  const double flat = 1 / (kFlat * std::max(bounds(surface).diagonal(), 1e-9));
-  SurfaceEvaluator evaluator(surface);
-  for (const double t : samples_in(surface.knots(along), surface.domain(along), kLineSamples)) {
-    // Between the samples at knots only: there the pieces on both sides of the knot would mix.
-    const bool u = direction == Direction::u;
-    const auto side = [&](Side s) {
-      return u ? evaluator.derivatives(at, t, s, Side::right) : evaluator.derivatives(t, at, Side::right, s);
-    };
-    const SurfaceDerivatives left = side(Side::left), right = side(Side::right);
-    const Vec3 line = u ? right.dv : right.du;
-    const Vec3 cross_left = u ? left.du : left.dv, cross_right = u ? right.du : right.dv;
-    const double longest = std::max({norm(line), norm(cross_left), norm(cross_right)});
-    if (!(std::min({norm(line), norm(cross_left), norm(cross_right)}) > kDegenerate * longest)) continue;
-    const Vec3 n1 = normal(left), n2 = normal(right);
-    if (norm(n1) == 0 || norm(n2) == 0) continue;
-    if (!(std::atan2(norm(cross(n1, n2)), dot(n1, n2)) <= kTangentAngle)) return Continuity::g0;
-    const double k1 = curvature_across(left, unit(line)), k2 = curvature_across(right, unit(line));
-    if (!(std::abs(k1 - k2) <= kCurvatureRatio * std::max({std::abs(k1), std::abs(k2), flat})))
-      found = Continuity::g1;
-  }
-  return found;
-}
-
+/// Distance of p to the surface, by Newton from `start`: never more than from there.
 double local_distance(const NurbsSurface& surface, Point3 p, Point2 start) {
   const Interval u = surface.domain(Direction::u), v = surface.domain(Direction::v);
   double best = distance(point(surface, start.x, start.y), p);
@@ -121,6 +90,8 @@ double local_distance(const NurbsSurface& surface, Point3 p, Point2 start) {
   return best;
 }
 
+/// The largest of `distance_at` over 9 x 9 places in every span of the surface, and uphill from there.
+/// `distance_at` may stop early with a value that is not above `most`.
 double largest_over(const NurbsSurface& surface, const Region& region,
                     const std::function<double(Point2 at, double most)>& distance_at, double negligible_mm) {
   const std::size_t spans =
@@ -150,6 +121,34 @@ double largest_over(const NurbsSurface& surface, const Region& region,
     }
   }
   return most;
+}
+
+}  // namespace
+
+Continuity continuity_along(const NurbsSurface& surface, Direction direction, double at) {
+  const Direction along = other(direction);
+  Continuity found = Continuity::g2;
+  const double flat = 1 / (kFlat * std::max(bounds(surface).diagonal(), kLeastSize));
+  SurfaceEvaluator evaluator(surface);
+  for (const double t : samples_in(surface.knots(along), surface.domain(along), kLineSamples)) {
+    // Between the samples at knots only: there the pieces on both sides of the knot would mix.
+    const bool u = direction == Direction::u;
+    const auto side = [&](Side s) {
+      return u ? evaluator.derivatives(at, t, s, Side::right) : evaluator.derivatives(t, at, Side::right, s);
+    };
+    const SurfaceDerivatives left = side(Side::left), right = side(Side::right);
+    const Vec3 line = u ? right.dv : right.du;
+    const Vec3 cross_left = u ? left.du : left.dv, cross_right = u ? right.du : right.dv;
+    const double longest = std::max({norm(line), norm(cross_left), norm(cross_right)});
+    if (!(std::min({norm(line), norm(cross_left), norm(cross_right)}) > kDegenerate * longest)) continue;
+    const Vec3 n1 = normal(left), n2 = normal(right);
+    if (norm(n1) == 0 || norm(n2) == 0) continue;
+    if (!(std::atan2(norm(cross(n1, n2)), dot(n1, n2)) <= kTangentAngle)) return Continuity::g0;
+    const double k1 = curvature_across(left, unit(line)), k2 = curvature_across(right, unit(line));
+    if (!(std::abs(k1 - k2) <= kCurvatureRatio * std::max({std::abs(k1), std::abs(k2), flat})))
+      found = Continuity::g1;
+  }
+  return found;
 }
 
 double distance_by_samples(const NurbsSurface& joined, const Region& region, const NurbsSurface& source,

@@ -14,9 +14,6 @@ constexpr int kCases = 60;
 #else
 constexpr int kCases = 8;
 #endif
-constexpr double kExact = 1e-9;
-constexpr Grouping kRules[] = {Grouping::largest, Grouping::first_block, Grouping::u_first,
-                               Grouping::v_first};
 
 /// Left half of a surface whole, of the right half only what lies between two lines.
 TEST(PartialJoin, PartOfASideSplitsTheBase) {
@@ -32,9 +29,7 @@ TEST(PartialJoin, PartOfASideSplitsTheBase) {
         disguised(random, halves[0]),
         disguised(random, sub_surface(halves[1], halves[1].domain(Direction::u), part))};
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 1u + (low ? 1 : 0) + (high ? 1 : 0)) << "case " << k;
       EXPECT_LT(difference(patches, c, random, 12), kExact * 100) << "case " << k;
       EXPECT_LT(c.report.deviation_max_mm, kExact * 100);
@@ -53,9 +48,7 @@ TEST(PartialJoin, JunctionsBecomeAGrid) {
     for (const auto& part : cut_into(random, halves[1], 1, integer(random, 2, 4)))
       patches.push_back(disguised(random, part));
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 1u) << "case " << k;
       EXPECT_LT(difference(patches, c, random, 12), kExact * 100) << "case " << k;
     }
@@ -64,9 +57,7 @@ TEST(PartialJoin, JunctionsBecomeAGrid) {
 
 TEST(PartialJoin, ShiftedBricks) {
   const std::vector<NurbsSurface> patches{rectangle(0, 0, 10, 5), rectangle(4, 5, 14, 9)};
-  for (const Grouping rule : kRules) {
-    const Composite c = joined(patches, {1e-4, 0.01, rule});
-    check(c);
+  for (const Composite& c : by_every_rule(patches)) {
     ASSERT_EQ(c.surfaces.size(), 3u);
     Random random(1);
     EXPECT_LT(difference(patches, c, random), 1e-12);
@@ -78,9 +69,7 @@ TEST(PartialJoin, ShiftedBricks) {
 TEST(PartialJoin, Pinwheel) {
   const std::vector<NurbsSurface> patches{rectangle(1, 1, 2, 2), rectangle(0, 0, 2, 1), rectangle(2, 0, 3, 2),
                                           rectangle(1, 2, 3, 3), rectangle(0, 1, 1, 3)};
-  for (const Grouping rule : kRules) {
-    const Composite c = joined(patches, {1e-4, 0.01, rule});
-    check(c);
+  for (const Composite& c : by_every_rule(patches)) {
     Random random(1);
     EXPECT_LT(difference(patches, c, random), 1e-12);
     EXPECT_EQ(c.surfaces.size(), 1u);
@@ -96,9 +85,7 @@ TEST(PartialJoin, ArcsOfOneCircle) {
         with_weights_scaled(turned(cylinder(25, a, kPi / 2, 0, 10), integer(random, 0, 7)), 3),
         turned(cylinder(25, a + from, to - from, 10, 15), integer(random, 0, 7))};
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 3u);
       EXPECT_LT(difference(patches, c, random, 12), kExact * 50);
       EXPECT_LT(c.report.gap_max_mm, kExact * 50);
@@ -121,9 +108,7 @@ TEST(PartialJoin, ProjectiveParametersInTheSharedDirection) {
       patches.push_back(turned(with_weights_scaled(bent, uniform(random, 0.1, 10)), integer(random, 0, 7)));
     }
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 1u) << "case " << k;
       EXPECT_LT(difference(patches, c, random, 12), kExact * 100) << "case " << k;
     }
@@ -135,9 +120,7 @@ TEST(PartialJoin, RingsWithOtherSeams) {
   std::vector<NurbsSurface> patches;
   for (int q = 0; q < 4; ++q) patches.push_back(cylinder(20, q * kPi / 2, kPi / 2, 0, 10));
   for (int q = 0; q < 3; ++q) patches.push_back(cylinder(20, 0.5 + q * 2 * kPi / 3, 2 * kPi / 3, 10, 20));
-  for (const Grouping rule : kRules) {
-    const Composite c = joined(patches, {1e-4, 0.01, rule});
-    check(c);
+  for (const Composite& c : by_every_rule(patches)) {
     EXPECT_EQ(c.surfaces.size(), 1u);
     Random random(1);
     EXPECT_LT(difference(patches, c, random), kExact * 50);
@@ -234,9 +217,7 @@ TEST(JoinAdversarial, CornersOnly) {
 TEST(JoinAdversarial, DuplicatesStayApart) {
   const NurbsSurface r = rectangle(0, 0, 1, 1);
   const std::vector<NurbsSurface> patches{r, turned(r, 5), rectangle(1, 0, 2, 1)};
-  for (const Grouping rule : kRules) {
-    const Composite c = joined(patches, {1e-4, 0.01, rule});
-    check(c);
+  for (const Composite& c : by_every_rule(patches)) {
     EXPECT_EQ(c.surfaces.size(), 2u);
     EXPECT_EQ(c.surfaces[0].members.size(), 2u);
     EXPECT_FALSE(c.report.unjoined.empty());
@@ -282,9 +263,7 @@ TEST(JoinAdversarial, TwoHalvesThatMeetTwice) {
   const std::vector<NurbsSurface> patches{cylinder(20, 0, kPi * 0.9, 0, 10),
                                           cylinder(20, kPi * 0.9, kPi * 0.5, 0, 10),
                                           cylinder(20, kPi * 1.4, kPi * 0.6, 0, 10)};
-  for (const Grouping rule : kRules) {
-    const Composite c = joined(patches, {1e-4, 0.01, rule});
-    check(c);
+  for (const Composite& c : by_every_rule(patches)) {
     EXPECT_EQ(c.surfaces.size(), 1u);
   }
 }
@@ -307,9 +286,7 @@ TEST(JoinAdversarial, MoebiusBand) {
     for (const NurbsSurface& s : moebius_band(integer(random, 3, 12)))
       patches.push_back(turned(s, integer(random, 0, 7)));
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       EXPECT_EQ(c.surfaces.size(), 1u);
       EXPECT_LT(difference(patches, c, random, 8), 1e-9);
     }
@@ -396,9 +373,7 @@ TEST(JoinAdversarial, DegenerateNets) {
       }
       patches.push_back(s);
     }
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       std::vector<bool> seen(patches.size(), false);
       for (const JoinedSurface& s : c.surfaces) {
         EXPECT_LE(s.deviation_mm, 0.01);

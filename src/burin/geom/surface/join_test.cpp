@@ -14,9 +14,6 @@ constexpr int kCases = 150;
 #else
 constexpr int kCases = 12;
 #endif
-constexpr double kExact = 1e-9;  // relative to the size, as promised
-constexpr Grouping kRules[] = {Grouping::largest, Grouping::first_block, Grouping::u_first,
-                               Grouping::v_first};
 
 TEST(Join, RefusesWhatIsNoPatch) {
   Diagnostics diagnostics;
@@ -51,9 +48,7 @@ TEST(Join, TwoInAllOrientations) {
     for (int first = 0; first < 8; ++first) {
       for (int second = 0; second < 8; ++second) {
         const std::vector<NurbsSurface> patches{turned(parts[0], first), turned(parts[1], second)};
-        for (const Grouping rule : kRules) {
-          const Composite c = joined(patches, {1e-4, 0.01, rule});
-          check(c);
+        for (const Composite& c : by_every_rule(patches)) {
           ASSERT_EQ(c.surfaces.size(), 1u) << first << " " << second;
           EXPECT_LT(difference(patches, c, random, 8), kExact * 100);
           ASSERT_EQ(c.surfaces[0].joints.size(), 1u);
@@ -72,9 +67,7 @@ TEST(Join, GridsOfDisguisedParts) {
     for (const NurbsSurface& part : cut_into(random, s, columns, rows))
       patches.push_back(disguised(random, part));
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 1u) << "case " << k;
       EXPECT_LT(difference(patches, c, random, 12), kExact * 100) << "case " << k;
       EXPECT_LT(c.surfaces[0].deviation_mm, kExact * 100);
@@ -94,9 +87,7 @@ TEST(Join, QuarterCylindersMakeARingCutAtTheFirst) {
       for (int q = 0; q < 4; ++q)
         patches.push_back(disguised(random, cylinder(20, 0.3 + q * kPi / 2, kPi / 2, 10 * z, 10 * (z + 1))));
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 1u);
       EXPECT_LT(difference(patches, c, random, 12), kExact * 40);
       for (const Joint& joint : c.surfaces[0].joints) EXPECT_EQ(joint.continuity, Continuity::g2);
@@ -120,9 +111,7 @@ TEST(Join, SphereOfOctants) {
       for (const double lower : {-kPi / 2, 0.0})
         patches.push_back(disguised(random, turned_arc(0, 30, lower, kPi / 2, q * kPi / 2, kPi / 2)));
     shuffle(random, patches);
-    for (const Grouping rule : kRules) {
-      const Composite c = joined(patches, {1e-4, 0.01, rule});
-      check(c);
+    for (const Composite& c : by_every_rule(patches)) {
       ASSERT_EQ(c.surfaces.size(), 1u);
       EXPECT_LT(difference(patches, c, random, 12), kExact * 60);
       for (const Joint& joint : c.surfaces[0].joints) EXPECT_EQ(joint.continuity, Continuity::g2);
@@ -136,9 +125,7 @@ TEST(Join, TorusIsCutTwice) {
   for (int q = 0; q < 4; ++q)
     for (int p = 0; p < 4; ++p)
       patches.push_back(disguised(random, turned_arc(50, 20, p * kPi / 2, kPi / 2, q * kPi / 2, kPi / 2)));
-  for (const Grouping rule : kRules) {
-    const Composite c = joined(patches, {1e-4, 0.01, rule});
-    check(c);
+  for (const Composite& c : by_every_rule(patches)) {
     ASSERT_EQ(c.surfaces.size(), 1u);
     EXPECT_EQ(c.surfaces[0].joints.size(), 6u);
     EXPECT_LT(difference(patches, c, random), kExact * 140);

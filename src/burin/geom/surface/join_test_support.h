@@ -16,6 +16,10 @@
 
 namespace burin::geom::test {
 
+constexpr double kExact = 1e-9;  ///< relative to the size, as promised
+constexpr Grouping kRules[] = {Grouping::largest, Grouping::first_block, Grouping::u_first,
+                               Grouping::v_first};
+
 inline Composite joined(const std::vector<NurbsSurface>& patches, JoinOptions options = {}) {
   Diagnostics diagnostics;
   auto result = join(patches, options, diagnostics);
@@ -77,6 +81,16 @@ inline void check(const Composite& composite) {
     const double whole = s.surface.domain(Direction::u).length() * s.surface.domain(Direction::v).length();
     EXPECT_NEAR(area, whole, 1e-9 * whole);
   }
+}
+
+/// One composite for each rule of grouping, checked.
+inline std::vector<Composite> by_every_rule(const std::vector<NurbsSurface>& patches) {
+  std::vector<Composite> all;
+  for (const Grouping rule : kRules) {
+    all.push_back(joined(patches, {1e-4, 0.01, rule}));
+    check(all.back());
+  }
+  return all;
 }
 
 /// The same shape in one of 8 orientations.

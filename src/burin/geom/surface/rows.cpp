@@ -43,6 +43,27 @@ int longest_span(const std::vector<double>& knots, double lo, double hi) {
   return best;
 }
 
+/// The polar form of the polynomial piece on [knots[span], knots[span + 1]], which must not be empty:
+/// args.size() == degree.
+std::vector<HPoint> blossom(const Rows& rows, int span, std::span<const double> args) {
+  const int p = rows.degree;
+  assert(static_cast<int>(args.size()) == p);
+  const std::size_t width = index(rows.width);
+  std::vector<HPoint> d(rows.row(span - p), rows.row(span + 1));
+  const auto& t = rows.knots;
+  for (int r = 1; r <= p; ++r) {
+    for (int j = p; j >= r; --j) {
+      const int i = span - p + j;
+      const double lo = t[index(i)], hi = t[index(i + p + 1 - r)];
+      const double alpha = (args[index(r - 1)] - lo) / (hi - lo);
+      HPoint* right = d.data() + index(j) * width;
+      const HPoint* left = right - width;
+      for (std::size_t k = 0; k < width; ++k) right[k] = (1 - alpha) * left[k] + alpha * right[k];
+    }
+  }
+  return {d.end() - rows.width, d.end()};
+}
+
 }  // namespace
 
 Rows rows_of(const NurbsCurve& curve) {
@@ -85,25 +106,6 @@ NurbsSurface surface_of(Rows rows, Direction direction, const NurbsSurface& like
     for (int i = 0; i < count; ++i) out.points.push_back(rows.row(i)[j]);
   out.knots_u = std::move(rows.knots);
   return out;
-}
-
-std::vector<HPoint> blossom(const Rows& rows, int span, std::span<const double> args) {
-  const int p = rows.degree;
-  assert(static_cast<int>(args.size()) == p);
-  const std::size_t width = index(rows.width);
-  std::vector<HPoint> d(rows.row(span - p), rows.row(span + 1));
-  const auto& t = rows.knots;
-  for (int r = 1; r <= p; ++r) {
-    for (int j = p; j >= r; --j) {
-      const int i = span - p + j;
-      const double lo = t[index(i)], hi = t[index(i + p + 1 - r)];
-      const double alpha = (args[index(r - 1)] - lo) / (hi - lo);
-      HPoint* right = d.data() + index(j) * width;
-      const HPoint* left = right - width;
-      for (std::size_t k = 0; k < width; ++k) right[k] = (1 - alpha) * left[k] + alpha * right[k];
-    }
-  }
-  return {d.end() - rows.width, d.end()};
 }
 
 std::vector<HPoint> row_at(const Rows& rows, double t) {

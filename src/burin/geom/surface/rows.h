@@ -29,9 +29,6 @@ NurbsCurve curve_of(Rows rows);
 /// `like` gives degree and knots of the other direction.
 NurbsSurface surface_of(Rows rows, Direction direction, const NurbsSurface& like);
 
-/// The polar form of the polynomial piece on [knots[span], knots[span + 1]], which must not be empty:
-/// args.size() == degree.
-std::vector<HPoint> blossom(const Rows& rows, int span, std::span<const double> args);
 /// The row of homogeneous points at t (The NURBS Book, A3.1 without the projection).
 std::vector<HPoint> row_at(const Rows& rows, double t);
 HPoint homogeneous_point(const NurbsCurve& curve, double t);

@@ -91,4 +91,8 @@ struct SurfacePlan {
 Result<SurfacePlan> plan(const geom::Composite& composite, const std::vector<Trim>& trims, geom::Point3 start,
                          const PlanOptions& options, Diagnostics& diagnostics);
 
+/// The rapids from where the tool stands to `to`, never below `safety_z` before the last of them: up first,
+/// and down only over the place. A start above the safety height is kept until then.
+std::vector<Motion> approach(geom::Point3 from, geom::Point3 to, double safety_z);
+
 }  // namespace burin::cycle

@@ -290,14 +290,32 @@ TEST(Pole, BallTopIsCutWithoutSingularities) {
       }
       const Remains remains(centres(p, 2, 0.02, cuts), 2);
       double most = 0;
-      // Not on the lower edge itself, which the paths of I2 meet at a slant (docs/surface-paths.md, limits).
       for (int i = 0; i <= 60; ++i)
-        for (int j = 2; j <= 60; ++j) {
+        for (int j = 0; j <= 60; ++j) {
           const Vec3 n = geom::normal(s, i / 60.0, j / 60.0);
           most = std::max(most, remains.height(geom::point(s, i / 60.0, j / 60.0), n));
         }
       EXPECT_LE(most, 0.02 * 1.01) << "along " << (along == Along::u ? "u" : "v");
     }
+}
+
+TEST(Approach, NeverBelowTheSafetyHeightButOverThePlace) {
+  const Point3 to{40, 5, 20};
+  for (const Point3 from : {Point3{0, 0, -3}, Point3{0, 0, 20}, Point3{0, 0, 50}, Point3{40, 5, 7}, to}) {
+    const std::vector<Motion> way = approach(from, to, 20);
+    Point3 at = from;
+    for (const Motion& m : way) {
+      EXPECT_EQ(m.kind, MotionKind::rapid);
+      EXPECT_EQ(m.path.start(), at);
+      EXPECT_NE(m.path.end(), at);
+      const bool across = m.path.end().x != at.x || m.path.end().y != at.y;
+      if (across) {
+        EXPECT_EQ(at.z, std::max(from.z, 20.0));
+      }
+      at = m.path.end();
+    }
+    EXPECT_EQ(at, to);
+  }
 }
 
 TEST(Plan, IsDeterministic) {

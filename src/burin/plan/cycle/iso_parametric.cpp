@@ -95,10 +95,10 @@ Step next_step(const Stepper& stepper, const Before& before, const PassTask& tas
   double ok = 0, bad = -1;  // steps known to keep the limits, known to break them
   Worst at_ok;
   double step = guess;
+  const double room = task.w.hi - w;
   for (int i = 0; i < kIterations; ++i) {
-    step = std::min(step, task.w.hi - w);
-    step = std::max(step, std::min(floor, task.w.hi - w));
-    const bool border = step >= task.w.hi - w;
+    step = std::clamp(step, std::min(floor, room), room);
+    const bool border = step >= room;
     const Worst found = stepper.worst(before, border ? task.w.hi : w + step);
     if (found.use <= kMost || step <= floor) {
       ok = step;
@@ -114,7 +114,7 @@ Step next_step(const Stepper& stepper, const Before& before, const PassTask& tas
     step = next;
     if (bad >= 0 && bad - ok < 1e-3 * bad && ok > 0) break;
   }
-  return {ok >= task.w.hi - w ? task.w.hi : w + ok, at_ok};
+  return {ok >= room ? task.w.hi : w + ok, at_ok};
 }
 
 double smallest_first_step(const Sheet& sheet, const PassTask& task, const std::vector<double>& samples,

@@ -46,7 +46,12 @@ class Front {
 
   /// The next path; no graphs when all of the border is reached.
   std::vector<Graph> advance(const std::vector<double>& places, PairFigures& figures) {
-    for (const double t : places) nodes_.push_back(solve(t, std::nullopt, 0));
+    for (const double t : places) {
+      const Node n = solve(t, std::nullopt, 0);
+      // Where the ball does not fit a valley the path is only led across: it is lifted there.
+      const bool inside = t > places.front() && t < places.back();
+      if (!(inside && n.state == State::active && in_valley(sheet_, n.t, n.w))) nodes_.push_back(n);
+    }
     std::vector<Graph> graphs;
     for (int round = 0;; ++round) {
       close_ends();
@@ -73,19 +78,20 @@ class Front {
   }
 
   double start_w(double t) const { return previous_ == nullptr ? task_.w.lo : previous_->w_at(t); }
+  double hi(double t) const { return task_.border_hi ? task_.border_hi->at(t).w : task_.w.hi; }
 
   Node solve(double t, std::optional<double> slope, double guess) {
-    if (previous_ != nullptr && !previous_->covers(t)) return {t, task_.w.hi, State::done};
-    const double w0 = start_w(t);
-    if (!(w0 < task_.w.hi)) return {t, task_.w.hi, State::done};
+    if (previous_ != nullptr && !previous_->covers(t)) return {t, hi(t), State::done};
+    const double w0 = start_w(t), end = hi(t);
+    if (!(w0 < end)) return {t, hi(t), State::done};
     double ok = 0, bad = -1;  // steps known to keep and to break the limits
     double step = guess > 0 ? guess : guess_ > 0 ? guess_ : first_step(sheet_, task_, t, w0);
     double best_step = step, best_off = 1e300, last_step = 0, last_use = 0;
     constexpr int kIterations = 40;
     for (int i = 0; i < kIterations; ++i) {
-      const bool border = step >= task_.w.hi - w0;
-      if (border) step = task_.w.hi - w0;
-      const double u = use(t, border ? task_.w.hi : w0 + step, slope);
+      const bool border = step >= end - w0;
+      if (border) step = end - w0;
+      const double u = use(t, border ? end : w0 + step, slope);
       if (border && u <= kAim + kOff) return at_border(t, w0);
       if (std::abs(u - kAim) < best_off) best_off = std::abs(u - kAim), best_step = step;
       if (best_off < kSolved) break;
@@ -104,15 +110,15 @@ class Front {
     if (best_off > kOff && bad >= 0) best_step = std::max(ok, least_);
     best_step = std::max(best_step, least_);
     guess_ = best_step;
-    return {t, std::min(w0 + best_step, task_.w.hi), State::active};
+    return {t, std::min(w0 + best_step, end), State::active};
   }
 
   // Within one step of the border. A border that is a point is covered from half a step away.
   Node at_border(double t, double w0) {
-    if (!pole_hi_) return {t, task_.w.hi, State::capped};
-    const double h = height_at(sheet_, t, task_.w.hi, sheet_.contact(t, w0).c);
-    if (previous_ != nullptr && h <= task_.scallop) return {t, task_.w.hi, State::capped};
-    return {t, 0.5 * (w0 + task_.w.hi), State::active};
+    if (!pole_hi_) return {t, hi(t), State::capped};
+    const double h = height_at(sheet_, t, hi(t), sheet_.contact(t, w0).c);
+    if (previous_ != nullptr && h <= task_.scallop) return {t, hi(t), State::capped};
+    return {t, 0.5 * (w0 + hi(t)), State::active};
   }
 
   // Between an active and a capped neighbour lies the place where the path meets the border.
@@ -141,8 +147,7 @@ class Front {
       const double mid = 0.5 * (in + out);
       if (!(std::min(in, out) < mid && mid < std::max(in, out))) break;
       const bool covered = previous_ == nullptr || previous_->covers(mid);
-      const bool inside =
-          covered && start_w(mid) < task_.w.hi && use(mid, task_.w.hi, std::nullopt) > kAim + kOff;
+      const bool inside = covered && start_w(mid) < hi(mid) && use(mid, hi(mid), std::nullopt) > kAim + kOff;
       (inside ? in : out) = mid;
       if (std::abs(out - in) < 1e-7 * task_.t.length()) break;
     }
@@ -202,12 +207,17 @@ class Front {
       for (std::size_t i = 0; i + 1 < g.t.size(); ++i) {
         const double t = 0.5 * (g.t[i] + g.t[i + 1]);
         const UvPoint p = g.at(t);
-        const double u = use(t, std::min(p.w, task_.w.hi), p.w1);
-        note();
+        if (in_valley(sheet_, t, p.w)) {
+          for (const double from : {g.t[i], g.t[i + 1]}) edge_of_valley(g, from, t, wanted);
+          continue;
+        }
+        const double u = use(t, std::min(p.w, hi(t)), p.w1);
         if (last_.too_tight) continue;  // lifted: more nodes would follow what is not cut
-        const Contact c = sheet_.contact(t, std::min(p.w, task_.w.hi));
+        const Contact c = sheet_.contact(t, std::min(p.w, hi(t)));
         const double apart = (g.t[i + 1] - g.t[i]) * norm(c.st + p.w1 * c.sw);
+        // Where paths bend over a crease the spline may swing over less than what counts.
         if (!(apart > kFinest * last_.side_step)) continue;
+        if (t >= task_.inner_t.lo && t <= task_.inner_t.hi) note();
         const bool half_of_pole = pole_hi_ && u < kAim;
         if (std::abs(u - kAim) > kOff && !half_of_pole) wanted.push_back(p);
       }
@@ -219,6 +229,21 @@ class Front {
                [](const Node& a, const Node& b) { return a.t < b.t; });
     nodes_ = std::move(all);
     return true;
+  }
+
+  // The last place before a valley that the path crosses: `out` does not lie in it, `in` does.
+  void edge_of_valley(const Graph& g, double out, double in, std::vector<UvPoint>& wanted) {
+    if (in_valley(sheet_, out, g.at(out).w)) return;
+    const double from = out;
+    constexpr int kHalvings = 20;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double mid = 0.5 * (in + out);
+      (in_valley(sheet_, mid, g.at(mid).w) ? in : out) = mid;
+    }
+    const UvPoint p = g.at(out);
+    use(out, std::min(p.w, hi(out)), p.w1);
+    const Contact c = sheet_.contact(out, std::min(p.w, hi(out)));
+    if (std::abs(out - from) * norm(c.st + p.w1 * c.sw) > kFinest * last_.side_step) wanted.push_back(p);
   }
 
   void note() {
@@ -241,15 +266,16 @@ class Front {
   PairFigures figures_;
 };
 
-PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last) {
+PairFigures between(const Sheet& sheet, geom::Interval inner, const Pass& a, const Pass& b, bool last) {
   PairFigures f;
   f.scallop_min = kNoOverlap;
   f.last = last;
   const Before before(a, sheet.radius());
   for (const Graph& g : b.graphs)
-    for (const double t : samples_along(sheet, {g.lo(), g.hi()}, 24)) {
+    for (const double t : samples_along(sheet, inner, 24)) {
       if (!a.covers(t)) continue;
       const UvPoint p = g.at(t);
+      if (in_valley(sheet, t, p.w)) continue;
       const Cusp c = cusp(sheet, before, t, p.w, p.w1, false);
       if (c.too_tight) continue;
       f.scallop_min = std::min(f.scallop_min, c.height);
@@ -259,6 +285,19 @@ PairFigures between(const Sheet& sheet, const Pass& a, const Pass& b, bool last)
   return f;
 }
 
+Pass border_pass(const Sheet& sheet, const PassTask& task, const std::optional<Graph>& graph, double w) {
+  Pass p;
+  if (graph) {
+    p.graphs.push_back(*graph);
+    p.track = build_track(sheet, *graph, task.path_mm);
+  } else {
+    p = constant_pass(sheet, task, w);
+  }
+  p.valley = graph.has_value();
+  p.fitting = between_valleys(sheet, p);
+  return p;
+}
+
 }  // namespace
 
 Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
@@ -266,7 +305,7 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
   const std::vector<double> places = samples_along(sheet, task.t, kSamples);
   const bool pole_lo = collapsed(sheet, task.t, task.w.lo), pole_hi = collapsed(sheet, task.t, task.w.hi);
   std::size_t nodes = 0;
-  if (!pole_lo) r.passes.push_back(constant_pass(sheet, task, task.w.lo));
+  if (!pole_lo) r.passes.push_back(border_pass(sheet, task, task.border_lo, task.w.lo));
   const double guess = first_step(sheet, task, 0.5 * (task.t.lo + task.t.hi), task.w.lo);
   if (task.w.length() / guess > 16.0 * static_cast<double>(task.max_paths)) return too_many_paths(task);
   for (;;) {
@@ -282,14 +321,15 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
       Track part = build_track(sheet, g, task.path_mm);
       next.track.insert(next.track.end(), part.begin(), part.end());
     }
+    next.fitting = between_valleys(sheet, next);
     nodes += node_count(next.track);
     if (nodes > kMaxNodes) return too_many_nodes();
     if (previous != nullptr) r.pairs.push_back(figures);
     r.passes.push_back(std::move(next));
   }
   if (!pole_hi) {
-    Pass border = constant_pass(sheet, task, task.w.hi);
-    if (!r.passes.empty()) r.pairs.push_back(between(sheet, r.passes.back(), border, true));
+    Pass border = border_pass(sheet, task, task.border_hi, task.w.hi);
+    if (!r.passes.empty()) r.pairs.push_back(between(sheet, task.inner_t, r.passes.back(), border, true));
     r.passes.push_back(std::move(border));
   }
   return r;

@@ -138,7 +138,20 @@ class Planner {
     const Point3 to = back ? parts_[i].end : parts_[i].start;
     const Point2 to_tw = back ? parts_[i].to : parts_[i].from;
     if (distance(from, to) <= path_mm_) return;
-    Track track = build_track(sheet_, at_, to_tw, path_mm_);
+    Track track;
+    if (!(at_.x == to_tw.x && at_.y == to_tw.y)) track = build_track(sheet_, at_, to_tw, path_mm_);
+    // A path along a crease may hold the ball on the other side of it than the link does.
+    const auto turn = [&](Point2 tw, Point3 a, Point3 b) {
+      const Contact c = sheet_.contact(tw.x, tw.y);
+      return turn_about(c.s, sheet_.radius(), a, b, c.st, sheet_.uv(tw.x, tw.y));
+    };
+    if (track.empty()) {
+      track.push_back(turn(at_, from, to));
+    } else {
+      const Point3 starts = track.front().tip.start(), ends = track.back().tip.end();
+      if (distance(ends, to) > path_mm_) track.push_back(turn(to_tw, ends, to));
+      if (distance(from, starts) > path_mm_) track.insert(track.begin(), turn(at_, from, starts));
+    }
     for (TrackPiece& p : track) {
       p.tip.nodes.front().p = chain.back().track.tip.nodes.back().p;
       chain.push_back({std::move(p), MotionKind::link, &sheet_, surface_, -1, false, 0});
@@ -165,9 +178,11 @@ std::vector<Stretch> stretches(Passes& passes, const Region& region, geom::Direc
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < passes.passes.size(); ++i) {
     Pass& pass = passes.passes[i];
-    const bool whole = region.whole() && pass.graphs.size() == 1;
+    const bool whole = region.whole() && pass.graphs.size() == 1 && !pass.kept;
     for (const Graph& g : pass.graphs)
-      for (const geom::Interval& t : region.cut(g, along)) {
+      for (geom::Interval t : region.cut(g, along)) {
+        if (pass.kept) t = {std::max(t.lo, pass.kept->lo), std::min(t.hi, pass.kept->hi)};
+        if (!(t.lo < t.hi)) continue;
         Stretch s;
         s.pass = static_cast<int>(i);
         s.track = whole ? std::move(pass.track) : cut_track(pass.track, t.lo, t.hi);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "burin/base/result.h"
+#include "burin/geom/surface/nurbs.h"
 #include "burin/plan/cycle/scallop.h"
 
 namespace burin::cycle {
@@ -14,6 +15,10 @@ namespace burin::cycle {
 /// The rectangle of parameters to be covered and what is allowed.
 struct PassTask {
   geom::Interval t, w;
+  /// What of t is machined; I2 plans on the rest as well, to run over edges that it meets at a slant.
+  geom::Interval inner_t;
+  /// Borders of I2 that are not constant w: between them and w the ball does not fit a valley. On all of t.
+  std::optional<Graph> border_lo, border_hi;
   double scallop = 0;
   std::optional<double> side_step;
   double tight_step = 0;  ///< largest side step where the ball does not fit: that of a plane
@@ -33,6 +38,18 @@ struct Passes {
 
 Result<Passes> iso_parametric(const Sheet& sheet, const PassTask& task);
 Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task);
+/// The same on a surface with creases along the paths: each crease is a border of what lies on either side.
+/// `surface`: that of the sheet.
+Result<Passes> iso_scallop_between_creases(const geom::NurbsSurface& surface, const Sheet& sheet,
+                                           const PassTask& task);
+
+/// Decides how far the paths of a sheet that goes on beyond its edges run over them.
+void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& passes);
+
+/// A ball at (t, w) cuts into the other flank of a crease across the paths.
+bool in_valley(const Sheet& sheet, double t, double w);
+/// Pass::fitting.
+std::vector<Pass::Section> between_valleys(const Sheet& sheet, const Pass& pass);
 
 // What both share.
 

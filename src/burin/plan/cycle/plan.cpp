@@ -7,6 +7,7 @@
 
 #include "burin/base/text.h"
 #include "burin/plan/cycle/cycle.h"
+#include "burin/plan/cycle/extend.h"
 #include "burin/plan/cycle/order.h"
 
 namespace burin::cycle {
@@ -43,6 +44,13 @@ Result<void> check(const geom::Composite& composite, Point3 start, const PlanOpt
   if (!(finite(start.x) && finite(start.y) && finite(start.z)))
     return usage("the start must be a point (three numbers, mm)");
   return {};
+}
+
+Motion straight(MotionKind kind, Point3 from, Point3 to) {
+  Motion motion;
+  motion.kind = kind;
+  motion.path = geom::straight(from, to);
+  return motion;
 }
 
 /// One surface planned in one direction.
@@ -130,12 +138,18 @@ class SurfacePlanner {
     const Region& region = regions_[index];
     SheetPlan out;
     out.along = along == Direction::u ? Along::u : Along::v;
-    sheets_.emplace_back(composite_.surfaces[index].surface, along, sign, radius_, options_.stock);
+    const geom::NurbsSurface& surface = composite_.surfaces[index].surface;
+    const bool over_edges = options_.method == Method::iso_scallop && region.whole();
+    // What stands on an edge between two paths is at most half a step off; steps are longer in hollows.
+    const double over = std::sqrt(8 * radius_ * options_.scallop);
+    const geom::NurbsSurface whole = over_edges ? continued(surface, along, over) : surface;
+    sheets_.emplace_back(whole, along, sign, radius_, options_.stock, surface.domain(along));
     const Sheet& sheet = sheets_.back();
     const PassTask task = task_of(sheet, region);
     if (!(task.t.length() > 0 && task.w.length() > 0)) return out;
-    Result<Passes> passes =
-        options_.method == Method::iso_parametric ? iso_parametric(sheet, task) : iso_scallop(sheet, task);
+    Result<Passes> passes = options_.method == Method::iso_parametric
+                                ? iso_parametric(sheet, task)
+                                : iso_scallop_between_creases(whole, sheet, task);
     if (!passes) return passes.error();
     out.pairs = passes->pairs;
     out.paths = passes->passes.size();
@@ -154,6 +168,8 @@ class SurfacePlanner {
     const bool u = sheet.along() == Direction::u;
     task.t = u ? region.u_range() : region.v_range();
     task.w = u ? region.v_range() : region.u_range();
+    task.inner_t = task.t;
+    if (region.whole()) task.t = sheet.t_range();
     task.scallop = options_.scallop;
     task.side_step = options_.side_step;
     task.tight_step = std::sqrt(8 * radius_ * options_.scallop);
@@ -232,27 +248,21 @@ class SurfacePlanner {
     }
   }
 
-  static void go(SurfacePlan& plan, Point3& at, Point3 to, MotionKind kind) {
-    if (at == to) return;
-    Motion m;
-    m.kind = kind;
-    m.path = geom::straight(at, to);
-    plan.rapid_mm += kind == MotionKind::rapid ? distance(at, to) : 0;
-    plan.link_mm += kind == MotionKind::plunge ? distance(at, to) : 0;
-    plan.motions.push_back(std::move(m));
-    at = to;
+  /// Appends, and adds the length to its sum.
+  static void put(Motion motion, SurfacePlan& plan) {
+    double& sum = motion.kind == MotionKind::rapid ? plan.rapid_mm
+                  : motion.kind == MotionKind::cut ? plan.cut_mm
+                                                   : plan.link_mm;
+    sum += geom::length(motion.path);
+    plan.motions.push_back(std::move(motion));
   }
 
   void assemble(std::vector<Chain>& chains, Point3 at, SurfacePlan& plan) const {
     for (Chain& c : chains) {
       const Point3 first = c.front().track.tip.start();
-      const double safe = options_.safety_z;
-      // Up first; a start above the safety height is kept until the tool stands over the place.
-      const double travel = std::max(at.z, safe);
-      go(plan, at, {at.x, at.y, travel}, MotionKind::rapid);
-      go(plan, at, {first.x, first.y, travel}, MotionKind::rapid);
-      go(plan, at, {first.x, first.y, safe}, MotionKind::rapid);
-      go(plan, at, first, MotionKind::plunge);
+      const Point3 over{first.x, first.y, options_.safety_z};
+      for (Motion& m : approach(at, over, options_.safety_z)) put(std::move(m), plan);
+      if (first != over) put(straight(MotionKind::plunge, over, first), plan);
       for (ChainPiece& p : c) {
         Motion m;
         m.kind = p.kind;
@@ -261,11 +271,12 @@ class SurfacePlanner {
         m.surface = p.surface;
         m.pass = p.pass;
         m.lift_max = p.lift_max;
-        (p.kind == MotionKind::cut ? plan.cut_mm : plan.link_mm) += geom::length(m.path);
         at = m.path.end();
-        plan.motions.push_back(std::move(m));
+        put(std::move(m), plan);
       }
-      go(plan, at, {at.x, at.y, safe}, MotionKind::rapid);
+      const Point3 above{at.x, at.y, options_.safety_z};
+      if (at != above) put(straight(MotionKind::rapid, at, above), plan);
+      at = above;
     }
   }
 
@@ -279,6 +290,17 @@ class SurfacePlanner {
 };
 
 }  // namespace
+
+std::vector<Motion> approach(Point3 from, Point3 to, double safety_z) {
+  const double travel = std::max(from.z, safety_z);
+  std::vector<Motion> motions;
+  Point3 at = from;
+  for (const Point3 next : {Point3{from.x, from.y, travel}, Point3{to.x, to.y, travel}, to}) {
+    if (at != next) motions.push_back(straight(MotionKind::rapid, at, next));
+    at = next;
+  }
+  return motions;
+}
 
 Result<SurfacePlan> plan(const geom::Composite& composite, const std::vector<Trim>& trims, geom::Point3 start,
                          const PlanOptions& options, Diagnostics& diagnostics) {

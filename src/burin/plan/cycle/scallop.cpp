@@ -86,7 +86,7 @@ double edge_cusp(const Sheet& sheet, const Before& before, double t_edge, double
   const auto both = [&](double w, double& ha, double& hb) {
     const Contact q = sheet.contact(t_edge, w);
     const Point3 over = q.s + reach * q.n;
-    ha = left_by(sheet, q, before.centres.find(over).c);
+    ha = left_by(sheet, q, before.centres(t_edge).find(over).c);
     double s = dot(over - b.c, axis);
     if (ends_here && s * inward < 0) s = 0;
     hb = left_by(sheet, q, b.c + s * axis);
@@ -109,6 +109,14 @@ bool fold(const Contact& c) {
   const double turned = dot(cross(c.ct, c.cw), cross(c.st, c.sw));
   const double trace = dot(c.ct, c.st) * dot(c.sw, c.sw) + dot(c.cw, c.sw) * dot(c.st, c.st);
   return turned < 0 || trace < 0;
+}
+
+// A crease across the paths within two steps of the new path's place at t, or between it and the old one's.
+bool near_crease(const Sheet& sheet, double t, double s, double speed, double step) {
+  constexpr double kSteps = 2;
+  return std::any_of(sheet.t_creases().begin(), sheet.t_creases().end(), [&](double crease) {
+    return (t - crease) * (s - crease) <= 0 || std::abs(t - crease) * speed < kSteps * step;
+  });
 }
 
 double on_surface(const Sheet& sheet, Point3 sa, double ta, double wa, Point3 sb, double tb, double wb) {
@@ -135,6 +143,10 @@ double Pass::w_at(double t) const {
   return nearest == nullptr ? 0.0 : nearest->at(t).w;
 }
 
+double height_over(const Sheet& sheet, const Contact& at, Point3 centre) {
+  return left_by(sheet, at, centre);
+}
+
 double height_at(const Sheet& sheet, double t, double w, Point3 centre) {
   return left_by(sheet, sheet.contact(t, w), centre);
 }
@@ -150,7 +162,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
     r.side_step = on_surface(sheet, pole, t, before.pole_w, b.s, t, w);
     return r;
   }
-  NearestCentre::Place a = before.centres.find(b.c);
+  NearestCentre::Place a = before.centres(t).find(b.c);
   double wa = before.path->w_at(a.s);
   const Contact at_a = sheet.contact(a.s, wa);
   // On a crease the ball of the path before may stand on either side of it, or between.
@@ -169,9 +181,9 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   Vec3 axis = norm(old) > 0 && std::abs(dot(old, own)) < kParallel ? old : own;
   const Vec3 apart = a.c - b.c;
   // Beyond its end the path before is the sphere about it: what stands between two spheres lies in the plane
-  // that holds both centres, whatever the direction of the new path. Over creases that the paths cross both
+  // that holds both centres, whatever the direction of the new path. At creases that the paths cross both
   // paths have bends, whose directions say nothing of the path as a whole; there too.
-  const bool bends = !ends && !sheet.t_creases().empty();
+  const bool bends = !ends && near_crease(sheet, t, a.s, norm(b.st), distance(b.c, a.c));
   if (const Vec3 around = cross(apart, down); (a.at_end || bends) && norm(around) > 0)
     axis = dot(around, axis) < 0 ? -unit(around) : unit(around);
   const double radius = sheet.radius();
@@ -192,7 +204,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
   constexpr int kRounds = 3;
   const double step = distance(b.c, a.c);
   for (int i = 0; i < kRounds; ++i) {
-    const NearestCentre::Place next = before.centres.find(x);
+    const NearestCentre::Place next = before.centres(t).find(x);
     if (distance(next.c, b.c) > 2 * step) break;
     const double moved = distance(next.c, a.c);
     if (!(moved > 1e-4 * step)) break;

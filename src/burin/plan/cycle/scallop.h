@@ -25,6 +25,16 @@ struct Cusp {
 struct Pass {
   std::vector<Graph> graphs;  ///< ascending in t, disjoint
   Track track;                ///< of all graphs, one after the other
+  bool valley = false;        ///< runs along one, where the ball touches both flanks
+  /// Where the path crosses valleys: the track between them without the parts in which the ball does not fit,
+  /// up to the crease at `until`. Empty: it crosses none.
+  struct Section {
+    double until = 0;
+    Track track;
+  };
+  std::vector<Section> fitting;
+  /// What of t is cut: the sheet may go on beyond what is machined. Nothing: all.
+  std::optional<geom::Interval> kept;
 
   bool covers(double t) const;
   double w_at(double t) const;  ///< of the graph that holds t, or the nearest one
@@ -32,10 +42,24 @@ struct Pass {
 
 /// What lies before a path: another path, or a single point (a collapsed border).
 struct Before {
-  Before(const Pass& pass, double radius) : centres(pass.track, radius), path(&pass) {}
+  Before(const Pass& pass, double radius) : path(&pass) {
+    if (pass.fitting.empty()) sections.push_back({0, NearestCentre(pass.track, radius)});
+    for (const Pass::Section& s : pass.fitting) sections.push_back({s.until, NearestCentre(s.track, radius)});
+  }
   Before(double t, double w) : pole(true), pole_t(t), pole_w(w) {}
 
-  NearestCentre centres;
+  /// The centres that count for a ball at t: those on the same flank of a valley.
+  const NearestCentre& centres(double t) const {
+    for (const Section& s : sections)
+      if (t < s.until) return s.centres;
+    return sections.back().centres;
+  }
+
+  struct Section {
+    double until = 0;  ///< the crease behind it
+    NearestCentre centres;
+  };
+  std::vector<Section> sections;
   const Pass* path = nullptr;
   bool pole = false;
   double pole_t = 0, pole_w = 0;
@@ -50,6 +74,7 @@ Cusp cusp(const Sheet& sheet, const Before& before, double t, double w, std::opt
           bool ends, geom::Side side = geom::Side::right);
 
 /// Height left at a surface point by a single ball.
+double height_over(const Sheet& sheet, const Contact& at, Point3 centre);
 double height_at(const Sheet& sheet, double t, double w, Point3 centre);
 
 }  // namespace burin::cycle

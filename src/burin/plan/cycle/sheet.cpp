@@ -80,22 +80,43 @@ double typical_length(const geom::NurbsSurface& s, Direction d) {
 
 }  // namespace
 
-Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, double radius, double stock)
+Sheet::Sheet(const geom::NurbsSurface& surface, Direction along, double sign, double radius, double stock,
+             std::optional<geom::Interval> inner)
     : along_(along),
       sign_(along == Direction::u ? sign : -sign),
       radius_(radius),
       stock_(stock),
       t_(surface.domain(along)),
       w_(surface.domain(other(along))),
+      inner_(inner.value_or(t_)),
       size_t_(typical_length(surface, along)),
       size_w_(typical_length(surface, other(along))),
       t_knots_(geom::inner_knots(surface.knots(along), surface.degree(along))),
       w_knots_(geom::inner_knots(surface.knots(other(along)), surface.degree(other(along)))),
       evaluator_(surface) {
   for (const geom::Knot& k : w_knots_)
-    if (k.multiplicity >= surface.degree(other(along))) w_creases_.push_back(k.value);
+    if (k.multiplicity >= surface.degree(other(along)) && creased(k.value, false))
+      w_creases_.push_back(k.value);
   for (const geom::Knot& k : t_knots_)
-    if (k.multiplicity >= surface.degree(along)) t_creases_.push_back(k.value);
+    if (k.multiplicity >= surface.degree(along) && creased(k.value, true)) t_creases_.push_back(k.value);
+  // The edges are places where paths are cut.
+  if (inner_.lo > t_.lo) t_knots_.insert(t_knots_.begin(), {inner_.lo, 0});
+  if (inner_.hi < t_.hi) t_knots_.push_back({inner_.hi, 0});
+}
+
+// Pieces that were joined where they are tangent have full knots there, but no crease.
+bool Sheet::creased(double value, bool in_t) const {
+  // Below this the centre jumps by less than what a path is off by anyway.
+  constexpr double kSmooth = 3e-4;
+  constexpr int kSamples = 32;
+  const geom::Interval across = in_t ? w_ : t_;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double x = across.lo + across.length() * i / kSamples;
+    const double t = in_t ? value : x, w = in_t ? x : value;
+    const Contact l = contact(t, w, in_t ? Side::left : Side::right, in_t ? Side::right : Side::left);
+    if (distance(l.c, contact(t, w).c) > kSmooth * radius_) return true;
+  }
+  return false;
 }
 
 geom::SurfaceDerivatives Sheet::at(double t, double w, Side side_t, Side side_w) const {
@@ -246,6 +267,7 @@ Contact Sheet::nearest(Point3 x, double& t, double& w, double step) const {
 }
 
 Point3 Sheet::uv(double t, double w) const {
+  t = std::clamp(t, inner_.lo, inner_.hi);
   return along_ == Direction::u ? Point3{t, w, 0} : Point3{w, t, 0};
 }
 

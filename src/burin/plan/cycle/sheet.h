@@ -4,6 +4,7 @@
 //   C(t, w) = S(t, w) + r n(t, w),  r = R + L,     tip = C - R k.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "burin/base/result.h"
@@ -33,18 +34,22 @@ struct CentreDerivatives {
 
 class Sheet {
  public:
-  /// `sign`: +1 when n = Su x Sv points to the tool, else -1.
-  Sheet(const geom::NurbsSurface& surface, geom::Direction along, double sign, double radius, double stock);
+  /// `sign`: +1 when n = Su x Sv points to the tool, else -1. `inner`: what of t_range() is the surface that
+  /// is machined, where it was continued beyond its edges; nothing: all of it.
+  Sheet(const geom::NurbsSurface& surface, geom::Direction along, double sign, double radius, double stock,
+        std::optional<geom::Interval> inner = std::nullopt);
 
   geom::Direction along() const { return along_; }
   geom::Interval t_range() const { return t_; }
+  geom::Interval t_inner() const { return inner_; }
+  double sign() const { return along_ == geom::Direction::u ? sign_ : -sign_; }
   geom::Interval w_range() const { return w_; }
   double radius() const { return radius_; }
   double stock() const { return stock_; }
   /// Inner knots in t and in w.
   const std::vector<geom::Knot>& t_knots() const { return t_knots_; }
   const std::vector<geom::Knot>& w_knots() const { return w_knots_; }
-  /// Knots of w where only the place is continuous (creases run along the paths).
+  /// Places of w where the normal jumps somewhere (creases run along the paths).
   const std::vector<double>& w_creases() const { return w_creases_; }
   /// The same in t: paths cross them.
   const std::vector<double>& t_creases() const { return t_creases_; }
@@ -60,19 +65,20 @@ class Sheet {
   /// `step`: good enough when the last correction was shorter, mm.
   Contact nearest(Point3 x, double& t, double& w, double step) const;
 
-  /// (u, v, 0) from (t, w).
+  /// (u, v, 0) from (t, w), on the edge where t lies beyond it.
   Point3 uv(double t, double w) const;
   Vec3 uv_vector(double t, double w) const;
 
  private:
   geom::SurfaceDerivatives at(double t, double w, geom::Side side_t, geom::Side side_w) const;
   bool normal_of(const geom::SurfaceDerivatives& d, Vec3& n) const;
+  bool creased(double value, bool in_t) const;
   geom::Point2 pulled_inside(double t, double w, double fraction) const;
 
   geom::Direction along_;
   double sign_;  ///< of St x Sw
   double radius_, stock_;
-  geom::Interval t_, w_;
+  geom::Interval t_, w_, inner_;
   double size_t_ = 1, size_w_ = 1;  ///< typical |St|, |Sw|
   std::vector<geom::Knot> t_knots_, w_knots_;
   std::vector<double> w_creases_, t_creases_;

@@ -46,7 +46,9 @@ class Builder {
       refine(run, node(marks[i + 1], true), 0);
       runs.push_back(std::move(run));
     }
-    return connect(runs);
+    std::vector<bool> over_edge;
+    for (const Mark& m : marks) over_edge.push_back(m.t_knot && at_edge(m.t));
+    return connect(runs, over_edge);
   }
 
  private:
@@ -62,6 +64,12 @@ class Builder {
     return node(m.s, p, side(p.t1), side(p.w1));
   }
 
+  /// An edge that the sheet goes on beyond.
+  bool at_edge(double t) const {
+    const geom::Interval inner = sheet_.t_inner(), all = sheet_.t_range();
+    return (t == inner.lo && inner.lo > all.lo) || (t == inner.hi && inner.hi < all.hi);
+  }
+
   Node node(double s, const UvPoint& p, Side side_t, Side side_w) const {
     const CentreDerivatives d = sheet_.derivatives(p.t, p.w, side_t, side_w);
     Node r;
@@ -71,7 +79,12 @@ class Builder {
     r.tip.d1 = p.t1 * d.at.ct + p.w1 * d.at.cw;
     r.tip.d2 = (p.t1 * p.t1) * d.ctt + (2 * p.t1 * p.w1) * d.ctw + (p.w1 * p.w1) * d.cww + p.t2 * d.at.ct +
                p.w2 * d.at.cw;
-    r.uv = {s, sheet_.uv(p.t, p.w), sheet_.uv_vector(p.t1, p.w1), sheet_.uv_vector(p.t2, p.w2)};
+    // Beyond the edges of the surface the parameters stay on the edge.
+    const geom::Interval inner = sheet_.t_inner();
+    const bool left = side_t == Side::left;
+    const bool outside = p.t < inner.lo || p.t > inner.hi || (at_edge(p.t) && (p.t == inner.lo) == left);
+    const double keep = outside ? 0.0 : 1.0;
+    r.uv = {s, sheet_.uv(p.t, p.w), sheet_.uv_vector(keep * p.t1, p.w1), sheet_.uv_vector(keep * p.t2, p.w2)};
     return r;
   }
 
@@ -124,24 +137,17 @@ class Builder {
 
   // The ball turns about the point of a crease.
   TrackPiece swing(const Node& a, const Node& b) const {
-    Vec3 axis = cross(a.contact.n, b.contact.n);
-    const double sine = norm(axis);
-    constexpr double kKnifeEdge = 1e-9;
-    if (sine < kKnifeEdge) axis = cross(a.contact.n, a.tip.d1);
-    const double sweep = std::atan2(sine, dot(a.contact.n, b.contact.n));
-    const Point3 centre{a.contact.s.x, a.contact.s.y, a.contact.s.z - sheet_.radius()};
-    TrackPiece p;
-    p.swing = true;
+    TrackPiece p =
+        turn_about(a.contact.s, sheet_.radius(), a.tip.p, b.tip.p, cross(a.contact.n, a.tip.d1), a.uv.p);
     p.s0 = p.s1 = a.tip.t;
-    p.tip = geom::arc(a.tip.p, centre, unit(axis), sweep, 0);
-    p.tip.nodes.back().p = b.tip.p;
-    for (const QuinticNode& n : p.tip.nodes) p.uv.nodes.push_back({n.t, a.uv.p, {}, {}});
     return p;
   }
 
-  Track connect(const std::vector<std::vector<Node>>& runs) const {
+  // `over_edge`: the run begins on an edge that the path runs over.
+  Track connect(const std::vector<std::vector<Node>>& runs, const std::vector<bool>& over_edge) const {
     Track track;
-    for (const std::vector<Node>& run : runs) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const std::vector<Node>& run = runs[i];
       TrackPiece next = piece_of(run);
       if (track.empty()) {
         track.push_back(std::move(next));
@@ -160,7 +166,7 @@ class Builder {
         continue;
       }
       l.p = r.p = lerp(l.p, r.p, 0.5);
-      if (!smooth(last, run)) {
+      if (over_edge[i] || !smooth(last, run)) {
         track.push_back(std::move(next));
         continue;
       }
@@ -207,6 +213,21 @@ std::vector<Mark> sorted(std::vector<Mark> marks, double s0, double s1) {
 }
 
 }  // namespace
+
+TrackPiece turn_about(Point3 touch, double radius, Point3 from, Point3 to, Vec3 across, Point3 uv) {
+  const Point3 centre{touch.x, touch.y, touch.z - radius};
+  const Vec3 a = from - centre, b = to - centre;
+  Vec3 axis = cross(a, b);
+  const double sine = norm(axis);
+  constexpr double kKnifeEdge = 1e-9;
+  if (sine < kKnifeEdge * norm(a) * norm(b)) axis = across;
+  TrackPiece p;
+  p.swing = true;
+  p.tip = geom::arc(from, centre, unit(axis), std::atan2(sine, dot(a, b)), 0);
+  p.tip.nodes.back().p = to;
+  for (const QuinticNode& n : p.tip.nodes) p.uv.nodes.push_back({n.t, uv, {}, {}});
+  return p;
+}
 
 Track build_track(const Sheet& sheet, const Graph& graph, double path_mm) {
   std::vector<Mark> marks;

@@ -28,6 +28,10 @@ Track build_track(const Sheet& sheet, const Graph& graph, double path_mm);
 /// The same along the straight line of parameters from a to b (x = t, y = w), s from 0 to 1.
 Track build_track(const Sheet& sheet, geom::Point2 a, geom::Point2 b, double path_mm);
 
+/// The ball turns about the point `touch` of a crease, from one tip to another; (u, v) stand still. `across`:
+/// the axis where both centres face each other over the point.
+TrackPiece turn_about(Point3 touch, double radius, Point3 from, Point3 to, Vec3 across, Point3 uv);
+
 /// The part of a track between two values of s (shorter pieces, the same curve).
 Track cut_track(const Track& track, double s0, double s1);
 std::size_t node_count(const Track& track);

@@ -35,6 +35,7 @@ struct TsiOptions {
   Tsi method = Tsi::surface;
   double radius = 0;
   double tolerance_mm = 0.01;  ///< the ball may sink in by at most half of this here
+  double deflection_mm = 0;    ///< of the mesh from the part: included in that half
 };
 struct TsiResult {
   CenterPath path;              ///< dense, gouge-free for `surface`
@@ -51,7 +52,10 @@ struct TsiResult {
 TsiResult resolve_tsi(const ContactPath& path, const geom::MeshIndex& part, const TsiOptions& options);
 
 struct SsiResult {
-  std::vector<Place> points;       ///< of the places, as few as the tolerance allows; ends are kept
+  std::vector<Place> points;  ///< of the places, as few as the tolerance allows; ends are kept
+  /// Where on the path each point stands: number of the dense place before it, and the part of the way to the
+  /// next one. Ascending; on a closed path it goes on over the number of places.
+  std::vector<double> at;
   double error_max_mm = 0;         ///< largest error of a step
   std::size_t split = 0;           ///< steps halved by the paper's procedure 1 on this path
   std::size_t halving_points = 0;  ///< CL points it would take

@@ -6,7 +6,7 @@
 
 #include "burin/geom/mesh/mesh_index.h"
 #include "burin/model/tool.h"
-#include "burin/plan/rotary/reach.h"
+#include "burin/plan/rotary/body_index.h"
 
 namespace burin::rotary {
 
@@ -30,7 +30,7 @@ struct MoveCheck {
   double ball_depth = 0;  ///< deepest that the ball sinks in, upper bound
 };
 /// Conservative: `clear` is a proof within the tolerance.
-MoveCheck check_move(const AxisPose& from, const AxisPose& to, const ReachIndex& reach,
+MoveCheck check_move(const AxisPose& from, const AxisPose& to, const BodyIndex& body,
                      const geom::MeshIndex& part, const model::BallTool& tool, const MotionOptions& options);
 
 }  // namespace burin::rotary

@@ -56,6 +56,9 @@ struct Leg {
   std::vector<AxisPose> poses;
   std::size_t path = 0;
   std::vector<std::size_t> points;  ///< cut: the RotaryPoint behind each pose
+  /// approach: poses up to this one are reached in the air along the axis, as fast as the machine can (0:
+  /// everything at the feed). retract: the last pose is reached like that.
+  std::size_t descent = 0;
 };
 
 struct RotaryCounts {

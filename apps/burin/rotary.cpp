@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// burin rotary: a rotational part and a ball-end mill -> 4-axis paths free of SSI, TSI and TAI -> CL, NC.
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "burin/base/text.h"
+#include "burin/cl/apt.h"
+#include "burin/job/rotary_job.h"
+#include "burin/post/emit.h"
+#include "burin/view/rotary_html.h"
+#include "cli.h"
+#include "commands.h"
+
+namespace burin::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RotaryArgs {
+  std::string job, points;
+  std::optional<double> tolerance;
+  post::FeedMode feed = post::FeedMode::inverse_time;
+};
+
+const char* word(rotary::State state) {
+  return state == rotary::State::ok ? "ok" : state == rotary::State::moved ? "moved" : "unreachable";
+}
+const char* word(rotary::Pattern pattern) {
+  return pattern == rotary::Pattern::rings    ? "rings"
+         : pattern == rotary::Pattern::spiral ? "spiral"
+                                              : "lines";
+}
+
+// --- points.csv
+
+/// lo:hi;lo:hi in degrees, lo in [-180, 180).
+std::string reachable_text(const rotary::AngleSet& set) {
+  std::string text;
+  for (const rotary::AngleInterval& interval : set)
+    text += (text.empty() ? "" : ";") + format_fixed(geom::degrees(interval.lo), 4) + ":" +
+            format_fixed(geom::degrees(interval.hi), 4);
+  return text;
+}
+
+std::string points_csv(const rotary::RotaryPlan& plan) {
+  constexpr int kLength = 6, kUnit = 8, kAngle = 4;
+  std::string text =
+      "path,index,u,w,contact_x,contact_y,contact_z,normal_x,normal_y,normal_z,center_x,center_y,center_z,"
+      "theta_deg,state,reachable\n";
+  for (const rotary::RotaryPoint& point : plan.points) {
+    const auto add = [&text](double value, int decimals) { text += format_fixed(value, decimals) + ","; };
+    const rotary::Contact& c = point.place.contact;
+    text += std::to_string(point.path) + "," + std::to_string(point.index) + ",";
+    add(c.u, kUnit), add(c.w, kUnit);
+    add(c.p.x, kLength), add(c.p.y, kLength), add(c.p.z, kLength);
+    add(c.n.x, kUnit), add(c.n.y, kUnit), add(c.n.z, kUnit);
+    add(point.place.center.x, kLength), add(point.place.center.y, kLength),
+        add(point.place.center.z, kLength);
+    add(geom::degrees(point.theta), kAngle);
+    text += std::string(word(point.place.state)) + "," + reachable_text(point.reachable) + "\n";
+  }
+  return text;
+}
+
+// --- report
+
+Json holder_json(const model::BallTool& tool) {
+  Json pieces = Json::array();
+  for (const model::HolderPiece& piece : tool.holder)
+    pieces.push_back({{"radius_mm", piece.radius}, {"height_mm", piece.height}});
+  return pieces;
+}
+
+double machining_s(const job::RotaryJob& job, const kinematics::Kinematics& machine) {
+  double minutes = 0;
+  kinematics::Joints at;
+  bool known = false;
+  for (const kinematics::JointMove& move : job.joints.moves) {
+    minutes += move.minutes;
+    if (move.rapid && known) minutes += kinematics::least_minutes(machine, at, move.to);
+    at = move.to;
+    known = true;
+  }
+  return 60 * minutes;
+}
+
+void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, const post::NcText& nc,
+                 const kinematics::Kinematics& machine, const std::optional<job::RotaryCheck>& check,
+                 Session& session) {
+  const rotary::RotaryOptions& o = file.options;
+  const rotary::RotaryCounts& c = job.plan.counts;
+  const rotary::RotaryQuality& q = job.plan.quality;
+  Report& r = session.report;
+  r.parameters = {{"pattern", word(o.pattern)},
+                  {"tolerance_mm", o.tolerance_mm},
+                  {"scallop_mm", o.side_step ? Json(nullptr) : Json(o.scallop)},
+                  {"side_step_mm", o.side_step ? Json(*o.side_step) : Json(nullptr)},
+                  {"tsi", o.tsi == rotary::Tsi::surface ? "surface" : "path"},
+                  {"tai", o.tai == rotary::Tai::exact ? "exact" : "section"},
+                  {"clearance_angle_deg", geom::degrees(o.clearance)},
+                  {"lean_angle_deg", geom::degrees(o.lean)},
+                  {"smooth", o.smooth},
+                  {"feed_mm_min", o.feed_mm_min},
+                  {"ball_radius_mm", file.tool.radius},
+                  {"shank_radius_mm", file.tool.shank_radius},
+                  {"shank_length_mm", file.tool.shank_length},
+                  {"holder", holder_json(file.tool)},
+                  {"machine", machine.machine().name},
+                  {"dialect", session.common.dialect}};
+  r.counts = {{"contact_points", c.contact_points},
+              {"ssi_split", c.ssi_split},
+              {"tsi", c.tsi},
+              {"tai", c.tai},
+              {"moved", c.moved},
+              {"unreachable", c.unreachable},
+              {"cl_points", c.cl_points},
+              {"axis_reversals", c.axis_reversals},
+              {"halving_points", c.halving_points},
+              {"broken", c.broken},
+              {"paths", job.plan.points.empty() ? 0 : job.plan.points.back().path + 1},
+              {"triangles", job.part.mesh.triangles.size()},
+              {"nc_blocks", nc.moves},
+              {"feed_limited", job.joints.feed_limited}};
+  r.quality = {{"ssi_max_mm", q.ssi_max_mm},
+               {"gouge_max_mm", check ? check->report.gouge_max_mm() : q.gouge_max_mm},
+               {"excess_max_mm", check ? check->report.excess_max_mm : q.excess_max_mm},
+               {"axis_step_max_deg", geom::degrees(q.axis_step_max)},
+               {"axis_turn_total_deg", geom::degrees(q.axis_turn_total)},
+               {"scallop_mm", q.scallop_mm},
+               {"side_step_min_mm", q.side_step_min_mm},
+               {"side_step_max_mm", q.side_step_max_mm},
+               {"gouge_planned_mm", q.gouge_max_mm},
+               {"uncut_planned_mm", q.excess_max_mm}};
+  if (check) {
+    r.quality["gouge_ball_mm"] = check->report.ball.mm;
+    r.quality["gouge_shank_mm"] = check->report.shank.mm;
+    r.quality["gouge_holder_mm"] = check->report.holder.mm;
+    r.quality["bound_mm"] = check->bound_mm;
+  }
+  r.lengths_mm = {{"cut", job.plan.lengths_mm.cut},
+                  {"link", job.plan.lengths_mm.link},
+                  {"rapid", job.plan.lengths_mm.rapid}};
+  r.time_s["machining"] = machining_s(job, machine);
+}
+
+/// What the independent check found beyond the tolerance.
+void warn_of_gouge(const job::RotaryJobFile& file, const job::RotaryCheck& check, Session& session) {
+  const auto say = [&](const verify::Finding& found, const char* what) {
+    if (found.mm <= file.options.tolerance_mm + check.bound_mm) return;
+    session.diagnostics.add(
+        {Severity::left_out,
+         "gouge",
+         std::string("the ") + what + " cuts " + format_fixed(found.mm, 4) + " mm into the part",
+         {},
+         std::array{found.at.x, found.at.y, found.at.z}});
+  };
+  say(check.report.ball, "ball");
+  say(check.report.shank, "shank");
+  say(check.report.holder, "holder");
+}
+
+std::string html(const RotaryArgs& args, const job::RotaryJobFile& file, const job::RotaryJob& job,
+                 const std::string& nc_text, const Session& session) {
+  view::RotaryPicture picture;
+  picture.title = fs::path(args.job).stem().string();
+  picture.command_line = session.command_line;
+  picture.part = &job.part;
+  picture.plan = &job.plan;
+  picture.tool = &file.tool;
+  picture.options = &file.options;
+  picture.diagnostics = &session.diagnostics;
+  picture.nc_text = nc_text;
+  const Report& r = session.report;
+  const auto add = [&](const char* group, const std::string& name, std::string value) {
+    picture.figures.push_back({group, name, std::move(value)});
+  };
+  for (const auto& [key, value] : r.counts.items()) add("Counts", key, value.dump());
+  for (const auto& [key, value] : r.quality.items())
+    add("Quality", key, format_fixed(value.get<double>(), 5));
+  for (const auto& [key, value] : r.lengths_mm.items())
+    add("Lengths", key, format_fixed(value.get<double>(), 1) + " mm");
+  add("Time", "machining", format_fixed(r.time_s["machining"].get<double>(), 1) + " s");
+  return view::rotary_html(picture);
+}
+
+// --- the run
+
+Result<void> put_outputs(const RotaryArgs& args, const job::RotaryJobFile& file, const job::RotaryJob& job,
+                         const post::NcText& nc, const std::string& nc_path, Session& session) {
+  const auto put = [&](const std::string& path, auto&& make) -> Result<void> {
+    if (path.empty()) return {};
+    return session.put(path, make());
+  };
+  if (auto ok = put(nc_path, [&] { return nc.text; }); !ok) return ok;
+  if (auto ok = put(args.points, [&] { return points_csv(job.plan); }); !ok) return ok;
+  if (auto ok = put(session.common.cl, [&] { return cl::write_apt(job.cl); }); !ok) return ok;
+  if (auto ok = put(session.common.svg, [&] { return view::rotary_svg(job.part, job.plan, file.tool); }); !ok)
+    return ok;
+  return put(session.common.html, [&] { return html(args, file, job, nc.text, session); });
+}
+
+/// -o, or the job's name with .ngc when nothing else is asked for.
+std::string nc_name(const RotaryArgs& args, const Common& c) {
+  const bool nothing_else =
+      args.points.empty() && c.cl.empty() && c.json.empty() && c.html.empty() && c.svg.empty();
+  if (!c.output.empty() || !nothing_else) return c.output;
+  return fs::path(args.job).replace_extension(".ngc").string();
+}
+
+Result<kinematics::Kinematics> machine_of(const job::RotaryJobFile& file, const fs::path& folder) {
+  // A machine file stands beside the job, a preset has no ending.
+  const std::string name =
+      fs::path(file.machine).extension() == ".toml" ? (folder / file.machine).string() : file.machine;
+  auto machine = model::find_machine(name);
+  if (!machine) return machine.error();
+  return kinematics::Kinematics::make(*machine);
+}
+
+Result<void> run_rotary(const RotaryArgs& args, Session& session) {
+  auto dialect = post::find_dialect(session.common.dialect);
+  if (!dialect) return dialect.error();
+  auto text = session.read_input(args.job);
+  if (!text) return text.error();
+  const std::string nc_path = nc_name(args, session.common);
+  for (const std::string& path : {nc_path, args.points}) {
+    if (path.empty() || path == session.common.output) continue;  // -o is reserved already
+    if (auto ok = session.reserve_output(path); !ok) return ok;
+  }
+  auto file = job::read_rotary_job(*text, args.job);
+  if (!file) return file.error();
+  if (args.tolerance) file->options.tolerance_mm = *args.tolerance;
+  const fs::path folder = fs::path(args.job).parent_path();
+  auto machine = machine_of(*file, folder);
+  if (!machine) return machine.error();
+  const auto read = [&session](const std::string& path) { return session.read_input(path); };
+  auto job = job::make_rotary_job(*file, *machine, fs::path(args.job).stem().string(), folder.string(), read,
+                                  session.diagnostics, session.progress());
+  session.end_progress();
+  session.diagnostics.locate(args.job);
+  const auto in_file = [&](Error error) {
+    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.job;
+    return error;
+  };
+  if (!job) return in_file(job.error());
+  if (job->joints.feed_limited > 0)
+    session.diagnostics.info("feed_limited",
+                             std::to_string(job->joints.feed_limited) +
+                                 " moves are slower than the feed: an axis is at its speed limit");
+  post::JointEmitOptions emit;
+  emit.write_z = true;
+  emit.feed = args.feed;
+  auto nc = post::emit_joints(job->cl, *machine, job->joints, *dialect, emit, session.diagnostics);
+  if (!nc) return in_file(nc.error());
+  std::optional<job::RotaryCheck> check;
+  if (!session.common.json.empty() || !session.common.html.empty())
+    check = job::check_rotary_job(*file, *job, *machine);
+  if (check) warn_of_gouge(*file, *check, session);
+  fill_report(*file, *job, *nc, *machine, check, session);
+  return put_outputs(args, *file, *job, *nc, nc_path, session);
+}
+
+}  // namespace
+
+void add_rotary(Cli& cli) {
+  auto args = std::make_shared<RotaryArgs>();
+  CLI::App& app = cli.add_command(
+      "rotary", "finish a rotational part on a 4-axis mill, free of interference",
+      "  burin rotary cutter.toml -o cutter.ngc --html report.html\n"
+      "  burin rotary cutter.toml --points points.csv --json figures.json\n"
+      "  burin rotary cam.toml --cl cam.cl --feed-mode per-minute --dialect fanuc -o cam.nc\n",
+      [args](Session& session) { return run_rotary(*args, session); });
+  add_text(app, "JOB.toml", args->job, "FILE", "part, tool, operation and machine")->required();
+  add_text(app, "--points", args->points, "FILE", "contact points, axes and reachable angles as CSV");
+  add_choice<post::FeedMode>(
+      app, "--feed-mode", args->feed,
+      {{"inverse-time", post::FeedMode::inverse_time}, {"per-minute", post::FeedMode::per_minute}},
+      "G93, or G94 with an F that gives the tip its feed");
+  add_number(app, "--tolerance", args->tolerance, kPositiveLength, "instead of the job's tolerance");
+  cli.add_dialect(app);
+  cli.add_threads(app);
+  cli.add_output(app, "NC program (default, when nothing else is asked for: the job's name with .ngc)");
+  cli.add_cl(app);
+  cli.add_json(app);
+  cli.add_html(app);
+  cli.add_svg(app);
+}
+
+}  // namespace burin::cli

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "burin/plan/rotary/path_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "burin/geom/vec.h"
+
+namespace burin::rotary {
+namespace {
+
+using geom::Point3;
+
+constexpr int kMaxRounds = 16;
+// Nodes on either side of a new one that may turn again, halved every round; the others keep their angle.
+constexpr std::size_t kWindow = 24;
+
+double turned_by(double a) {
+  return std::remainder(a, 2 * geom::kPi);
+}
+
+class PathPlanner {
+ public:
+  PathPlanner(const Shared& shared, const ContactPath& path, const AxisPose& start)
+      : shared_(shared), path_(path), start_(start) {
+    const RotaryOptions& o = shared.options;
+    TsiResult tsi = resolve_tsi(path, shared.mesh, {o.tsi, shared.tool.radius, o.tolerance_mm});
+    out_.tsi = tsi.interfering;
+    out_.excess_mm = tsi.excess_max_mm;
+    out_.closed = tsi.path.closed;
+    dense_ = std::move(tsi.path);
+  }
+
+  PathPlan run() {
+    const SsiResult ssi = thin(dense_, shared_.tool.radius, shared_.options.tolerance_mm);
+    out_.ssi_mm = ssi.error_max_mm;
+    out_.ssi_split = ssi.split;
+    out_.halving_points = ssi.halving_points;
+    const CenterLine line(dense_, shared_.tool.radius, 0.25 * shared_.options.tolerance_mm);
+    line_ = &line;
+    std::vector<double> at;
+    for (const double number : ssi.at) at.push_back(line.length_of(number));
+    if (at.empty()) return std::move(out_);
+    begin_well(at);
+    for (const double s : at) nodes_.push_back(made(s));
+    for (int round = 0; round < kMaxRounds; ++round) {
+      choose();
+      if (!refine(round)) break;
+    }
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  Node made(double s) const {
+    Node node;
+    node.s = s;
+    node.place = line_->at(s);
+    find_reach(shared_, node);
+    return node;
+  }
+
+  /// A closed path begins where the tool stands, and comes back there.
+  void begin_well(std::vector<double>& at) const {
+    if (!dense_.closed) return;
+    if (at.size() > 1 && at.back() - at.front() >= line_->length() * (1 - 1e-12)) at.pop_back();
+    std::size_t best = 0;
+    double nearest_mm = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      const double d = geom::distance(line_->at(at[i]).center, start_.center);
+      if (d < nearest_mm) {
+        nearest_mm = d;
+        best = i;
+      }
+    }
+    std::rotate(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(best), at.end());
+    for (std::size_t i = 1; i < at.size(); ++i)
+      if (at[i] < at[0]) at[i] += line_->length();
+    at.push_back(at[0] + line_->length());
+  }
+
+  // --- axes
+
+  Layer layer_of(std::size_t i) const {
+    const Node& node = nodes_[i];
+    Layer layer;
+    layer.reachable = node.reachable;
+    layer.initial = node.initial;
+    const geom::Vec3 n = node.place.contact.n;
+    // Leaning along X already keeps the tip out of the cut.
+    const double across = std::hypot(n.y, n.z);
+    layer.normal = across > std::cos(shared_.options.lean) ? std::atan2(n.y, n.z)
+                                                           : std::numeric_limits<double>::quiet_NaN();
+    if (i > 0) layer.length = node.s - nodes_[i - 1].s;
+    return layer;
+  }
+
+  void choose() {
+    std::vector<Layer> layers;
+    layers.reserve(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      layers.push_back(layer_of(i));
+      if (!free_.empty() && !free_[i] && nodes_[i].open()) pin(layers.back(), nodes_[i].theta);
+    }
+    AxisOptions o;
+    o.clearance = shared_.options.clearance;
+    o.smooth = shared_.options.smooth && shared_.section == nullptr;
+    o.lean = shared_.options.lean;
+    o.start = start_.theta;
+    out_.chain = choose_axes(layers, o);
+    std::vector<char> broken(nodes_.size(), 0);
+    for (const std::size_t b : out_.chain.breaks) broken[b] = 1;
+    broken_ = std::move(broken);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      double theta = out_.chain.theta[i];
+      // A pinned angle stays to the last bit, so that what was proven about it stays proven.
+      if (!free_.empty() && !free_[i] && std::abs(turned_by(theta - nodes_[i].theta)) < 1e-6)
+        theta = nodes_[i].theta + 2 * geom::kPi * std::round((theta - nodes_[i].theta) / (2 * geom::kPi));
+      if (theta != nodes_[i].theta) {
+        nodes_[i].cut = false;
+        if (i + 1 < nodes_.size()) nodes_[i + 1].cut = false;
+      }
+      nodes_[i].theta = theta;
+    }
+  }
+  static void pin(Layer& layer, double theta) {
+    const double t = turned_by(theta);
+    constexpr double kHalf = 1e-9;
+    const double lo = t - kHalf < -geom::kPi ? t - kHalf + 2 * geom::kPi : t - kHalf;
+    layer.reachable = {{lo, lo + 2 * kHalf}};
+  }
+
+  // --- motion
+
+  /// Largest distance of the contact points between two nodes from the ball that passes.
+  double undercut(const Node& a, const Node& b) const {
+    const AxisPose from = a.pose(), to = b.pose();
+    const double radius = shared_.tool.radius;
+    const geom::Vec3 chord = to.center - from.center;
+    const double h2 = dot(chord, chord);
+    double worst = 0;
+    if (!(h2 > 0)) return 0;
+    line_->between(a.s, b.s, [&](const Place& p) {
+      double t = std::clamp(dot(p.center - from.center, chord) / h2, 0.0, 1.0);
+      const AxisPose first = rotary::between(from, to, t);
+      t = std::clamp(t + dot(p.center - first.center, chord) / h2, 0.0, 1.0);
+      const AxisPose second = rotary::between(from, to, t);
+      const double d =
+          std::min(geom::distance(first.center, p.contact.p), geom::distance(second.center, p.contact.p));
+      worst = std::max(worst, d - radius);
+    });
+    return worst;
+  }
+
+  bool proven(Node& a, Node& b) {
+    const double tolerance = shared_.options.tolerance_mm;
+    const double ssi = undercut(a, b);
+    if (ssi > tolerance) return false;
+    MotionOptions o;
+    o.tolerance_mm = o.ball_mm = tolerance;
+    const MoveCheck check = check_move(a.pose(), b.pose(), shared_.body, shared_.mesh, shared_.tool, o);
+    if (!check.clear) return false;
+    out_.ssi_mm = std::max(out_.ssi_mm, ssi);
+    out_.gouge_mm = std::max(out_.gouge_mm, check.ball_depth);
+    return true;
+  }
+
+  /// Proves the steps; where that fails a node comes in between. False when nothing was added.
+  bool refine(int round) {
+    std::vector<Node> next;
+    std::vector<std::size_t> added;
+    const double shortest = std::min(shared_.options.tolerance_mm, 0.01 * shared_.tool.radius);
+    next.reserve(nodes_.size());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      if (i > 0) {
+        Node &a = nodes_[i - 1], &b = nodes_[i];
+        const bool both = a.open() && b.open();
+        if (both && !broken_[i] && !b.cut) b.cut = proven(a, b);
+        // Where the axis breaks or an unreachable stretch begins, the place is found by halving too.
+        const bool wanted = both ? !b.cut : a.open() != b.open() || b.s - a.s > shared_.tool.radius;
+        if (wanted && b.s - a.s > 2 * shortest) {
+          next.push_back(made((a.s + b.s) / 2));
+          added.push_back(next.size() - 1);
+        }
+      }
+      next.push_back(nodes_[i]);
+    }
+    if (added.empty()) return false;
+    nodes_ = std::move(next);
+    free_.assign(nodes_.size(), 0);
+    for (const std::size_t a : added) {
+      nodes_[a].cut = false;
+      if (a + 1 < nodes_.size()) nodes_[a + 1].cut = false;
+      const std::size_t window = std::max<std::size_t>(2, kWindow >> round);
+      const std::size_t lo = a > window ? a - window : 0, hi = std::min(nodes_.size(), a + window + 1);
+      std::fill(free_.begin() + static_cast<std::ptrdiff_t>(lo),
+                free_.begin() + static_cast<std::ptrdiff_t>(hi), char{1});
+    }
+    return true;
+  }
+
+  void finish() {
+    bool moved = false;
+    // The last round may have turned angles after its proofs, or stopped by its number.
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      Node& node = nodes_[i];
+      if (i == 0 || !node.open() || !nodes_[i - 1].open() || broken_[i])
+        node.cut = false;
+      else if (!node.cut)
+        node.cut = proven(nodes_[i - 1], node);
+      if (!node.open()) node.place.state = State::unreachable;
+      if (i == 0 || node.cut) continue;
+      line_->between(nodes_[i - 1].s, node.s, [&](const Place& p) {
+        out_.uncut.push_back(p.contact.p);
+        moved = moved || p.state == State::moved;
+      });
+    }
+    // The contacts that a moved place stands for are none of its own.
+    const std::size_t stride = 1 + path_.points.size() / 4096;
+    for (std::size_t i = 0; moved && i < path_.points.size(); i += stride)
+      out_.uncut.push_back(path_.points[i].p);
+    out_.nodes = std::move(nodes_);
+  }
+
+  const Shared& shared_;
+  const ContactPath& path_;
+  AxisPose start_;
+  CenterPath dense_;
+  const CenterLine* line_ = nullptr;
+  PathPlan out_;
+  std::vector<Node> nodes_;
+  std::vector<char> free_, broken_;
+};
+
+}  // namespace
+
+void find_reach(const Shared& shared, Node& node) {
+  const Point3 c = node.place.center;
+  node.initial = std::atan2(c.y, c.z);
+  // Moves are proven, a place alone is not: where the ball itself is in the part, no axis helps.
+  const bool sunk = shared.options.tsi == Tsi::surface &&
+                    shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
+  if (sunk) node.place.state = State::unreachable;
+  if (node.place.state == State::unreachable) {
+    node.initial_interferes = true;
+    return;
+  }
+  // A ball that sinks in is not cut with, not even at a single place.
+  const double depth = shared.options.tolerance_mm;
+  const bool gouges = depth < shared.tool.radius && shared.mesh.nearest(c, shared.tool.radius - depth);
+  AngleSet exact = gouges ? AngleSet{} : shared.reach.reachable(c);
+  node.initial_interferes = !contains(exact, node.initial);
+  if (gouges) return;
+  // In a slot as wide as the tool the ball sinks in by what resolve_tsi allows, and the shank with it.
+  ReachOptions lenient;
+  lenient.grow_mm = -shared.options.tolerance_mm / 2;
+  if (shared.section == nullptr) {
+    node.reachable = exact.empty() ? shared.reach.reachable(c, lenient) : std::move(exact);
+    return;
+  }
+  const SectionReach section = shared.section->at(c, node.place.contact.n);
+  node.initial_interferes = !contains(section.reachable, node.initial);
+  // The paper takes the middle; where the section did not see what interferes it is left uncut.
+  if (section.reachable.empty() || !contains(shared.reach.reachable(c, lenient), section.theta)) return;
+  constexpr double kHalf = 1e-6;
+  const double lo = std::remainder(section.theta - kHalf, 2 * geom::kPi);
+  node.reachable = {{lo >= geom::kPi ? lo - 2 * geom::kPi : lo, 0}};
+  node.reachable[0].hi = node.reachable[0].lo + 2 * kHalf;
+}
+
+PathPlan plan_path(const Shared& shared, const ContactPath& path, const AxisPose& start) {
+  return PathPlanner(shared, path, start).run();
+}
+
+}  // namespace burin::rotary
