@@ -47,7 +47,8 @@ class Linker {
   double clear_z_;  ///< of the ball's centre in the machine: the tool is above part and stock
   AxisPose at_;
   bool started_ = false, up_ = true;
-  std::vector<AxisPose> behind_;  ///< the cut that ends where the tool stands, for a way back
+  std::vector<std::size_t> refused_;  ///< points of runs that no way leads to
+  std::vector<AxisPose> behind_;      ///< the cut that ends where the tool stands, for a way back
 };
 
 /// Length of the tip's way in the part frame over a joint-linear move.
