@@ -21,6 +21,9 @@ using Wall = Point3;
 /// Walls that face along X more than this cannot be left in the plane.
 constexpr double kLeastAcross = 0.05;
 
+/// What the ball may be left in the part when it is said to touch, times the accuracy.
+constexpr double kLeftIn = 4;
+
 /// Pushes longer than this part of the radius are looked at again.
 constexpr double kLongPush = 0.25;
 
@@ -138,7 +141,7 @@ bool Roller::pull_in(Point3& c, geom::MeshIndex::Hit& hit) const {
     const double flat = norm(across(n));
     c = flat > 0.3 ? moved(c, (-room / flat) * across(n)) : c - room * n;
   }
-  return true;
+  return false;
 }
 
 bool Roller::touch(Point3 near, Place& place) const {
@@ -151,9 +154,13 @@ bool Roller::touch(Point3 near, Place& place) const {
   if (distance(c, near) > kLongPush * radius_) settle(c, near);
   geom::MeshIndex::Hit hit;
   if (!pull_in(c, hit)) return false;
+  const Vec3 n = unit(c - hit.p);
+  const Point3 center = hit.p + radius_ * n;
+  // What a push or a slide left in the part (past the end of it, between walls that close in) is no place.
+  if (part_.nearest(center, radius_ - kLeftIn * accuracy_)) return false;
   place.contact.p = hit.p;
-  place.contact.n = unit(c - hit.p);
-  place.center = hit.p + radius_ * place.contact.n;
+  place.contact.n = n;
+  place.center = center;
   place.state = State::moved;
   return true;
 }
