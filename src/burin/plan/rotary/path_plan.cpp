@@ -122,12 +122,13 @@ class PathPlanner {
     o.smooth = shared_.options.smooth && shared_.section == nullptr;
     o.lean = shared_.options.lean;
     o.start = start_.theta;
-    out_.chain = choose_axes(layers, o);
+    const AxisChain chain =
+        dense_.closed && free_.empty() ? round_and_round(layers, o) : choose_axes(layers, o);
     std::vector<char> broken(nodes_.size(), 0);
-    for (const std::size_t b : out_.chain.breaks) broken[b] = 1;
+    for (const std::size_t b : chain.breaks) broken[b] = 1;
     broken_ = std::move(broken);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      double theta = out_.chain.theta[i];
+      double theta = chain.theta[i];
       // A pinned angle stays to the last bit, so that what was proven about it stays proven.
       if (!free_.empty() && !free_[i] && std::abs(turned_by(theta - nodes_[i].theta)) < 1e-6)
         theta = nodes_[i].theta + 2 * geom::kPi * std::round((theta - nodes_[i].theta) / (2 * geom::kPi));
@@ -137,6 +138,23 @@ class PathPlanner {
       }
       nodes_[i].theta = theta;
     }
+  }
+  /// A closed path comes back with the angle it began with (and whole turns): of three times round the middle
+  /// one is taken.
+  static AxisChain round_and_round(std::vector<Layer> layers, const AxisOptions& options) {
+    if (layers.size() < 3) return choose_axes(layers, options);
+    const std::size_t n = layers.size() - 1;
+    // The last one is the first one again, with the length that leads to it.
+    const Layer seam = layers.back();
+    for (int copy = 0; copy < 2; ++copy)
+      for (std::size_t i = 1; i <= n; ++i) layers.push_back(i == n ? seam : Layer(layers[i]));
+    const AxisChain all = choose_axes(layers, options);
+    AxisChain out;
+    const double turns = 2 * geom::kPi * std::round((all.theta[n] - options.start) / (2 * geom::kPi));
+    for (std::size_t i = n; i <= 2 * n; ++i) out.theta.push_back(all.theta[i] - turns);
+    for (const std::size_t b : all.breaks)
+      if (b > n && b <= 2 * n) out.breaks.push_back(b - n);
+    return out;
   }
   static void pin(Layer& layer, double theta) {
     const double t = turned_by(theta);
