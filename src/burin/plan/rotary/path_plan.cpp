@@ -123,7 +123,7 @@ class PathPlanner {
     o.lean = shared_.options.lean;
     o.start = start_.theta;
     const AxisChain chain =
-        dense_.closed && free_.empty() ? round_and_round(layers, o) : choose_axes(layers, o);
+        dense_.closed ? round_and_round(layers, o) : choose_axes(layers, o);
     std::vector<char> broken(nodes_.size(), 0);
     for (const std::size_t b : chain.breaks) broken[b] = 1;
     broken_ = std::move(broken);
