@@ -229,7 +229,10 @@ void Linker::add_run(Run run, std::size_t path) {
     // The way back leads over the cut that was made, the one before is behind a link.
     if (!approach(run, path)) {
       ++plan_.counts.broken;
-      for (const std::size_t p : run.points) plan_.points[p].place.state = State::unreachable;
+      // A point where two runs meet may have been cut by the one before.
+      const bool shared = !plan_.legs.empty() && !plan_.legs.back().points.empty();
+      for (const std::size_t p : run.points)
+        if (!shared || plan_.legs.back().points.back() != p) plan_.points[p].place.state = State::unreachable;
       return;
     }
     behind_.clear();

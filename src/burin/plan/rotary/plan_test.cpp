@@ -171,6 +171,51 @@ double gouge(const RotaryPlan& plan, const geom::Mesh& mesh, const model::BallTo
   return worst;
 }
 
+/// What is left at the contact points that were asked for: how far the cuts (densely sampled) keep the ball
+/// from them.
+double left_over(const RotaryPlan& plan, const Part& part, const model::BallTool& tool,
+                 const RotaryOptions& options) {
+  PatternOptions pattern;
+  pattern.pattern = options.pattern;
+  pattern.ball_radius = tool.radius;
+  pattern.scallop = options.scallop;
+  pattern.side_step = options.side_step;
+  pattern.density_mm = 1e-3;
+  Diagnostics ignored;
+  const auto paths = make_paths(part, pattern, ignored);
+  std::vector<Point3> centers;
+  for (const Leg& leg : plan.legs) {
+    if (leg.kind != LegKind::cut) continue;
+    for (std::size_t i = 0; i < leg.poses.size(); ++i) {
+      centers.push_back(leg.poses[i].center);
+      if (i == 0) continue;
+      const AxisPose &a = leg.poses[i - 1], &b = leg.poses[i];
+      const Point3 from = rolled(a.center, a.theta), to = rolled(b.center, b.theta);
+      const int n = 1 + static_cast<int>((geom::distance(from, to) + 12 * std::abs(a.theta - b.theta)) / 0.1);
+      for (int k = 1; k < n; ++k) {
+        const double t = static_cast<double>(k) / n;
+        centers.push_back(rolled(lerp(from, to, t), -(a.theta + t * (b.theta - a.theta))));
+      }
+    }
+  }
+  std::sort(centers.begin(), centers.end(), [](const Point3& a, const Point3& b) { return a.x < b.x; });
+  double worst = 0;
+  for (const ContactPath& path : paths->paths) {
+    for (std::size_t i = 0; i < path.points.size(); i += 7) {
+      const Point3 p = path.points[i].p;
+      double best = 1e300;
+      const auto at = std::lower_bound(centers.begin(), centers.end(), p.x,
+                                       [](const Point3& c, double x) { return c.x < x; });
+      for (auto it = at; it != centers.end() && it->x - p.x < best; ++it)
+        best = std::min(best, geom::distance(*it, p));
+      for (auto it = at; it != centers.begin() && p.x - (it - 1)->x < best; --it)
+        best = std::min(best, geom::distance(*(it - 1), p));
+      worst = std::max(worst, best - tool.radius);
+    }
+  }
+  return worst;
+}
+
 void expect_joined(const RotaryPlan& plan) {
   for (std::size_t i = 0; i < plan.legs.size(); ++i) {
     const Leg& leg = plan.legs[i];
@@ -227,6 +272,10 @@ TEST(Plan, RandomPartsAreNotGouged) {
     cut += result->counts.cl_points > 10;
     expect_joined(*result);
     EXPECT_LE(gouge(*result, part->mesh, c.tool), options.tolerance_mm + 1e-6) << round;
+    // Samples 0.1 mm apart stand up to (0.05 mm)^2 / (2 R) further away; a step may leave moved places, too.
+    EXPECT_LE(left_over(*result, *part, c.tool, options),
+              result->quality.excess_max_mm + options.tolerance_mm)
+        << round;
     EXPECT_LE(result->quality.gouge_max_mm, options.tolerance_mm + 1e-9);
     EXPECT_EQ(result->counts.unreachable > 0, diagnostics.count("unreachable") > 0);
     for (const Leg& leg : result->legs)
