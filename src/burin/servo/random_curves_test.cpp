@@ -138,7 +138,7 @@ TEST(Plan, RandomCurvesKeepTheirLimits) {
   for (int i = first; i - first < n && !HasFatalFailure(); ++i)
     expect_kept<test::RandomCurves>(static_cast<std::uint64_t>(i), tally);
   // Seeds beyond the usual number that once failed (chord error between the planner's samples).
-  for (const std::uint64_t seed : {10962, 14711, 20238, 21513}) expect_kept<test::RandomCurves>(seed, tally);
+  for (const std::uint64_t seed : {10962U, 14711U, 20238U, 21513U}) expect_kept<test::RandomCurves>(seed, tally);
   EXPECT_EQ(tally.refused, 0u);
   tally.print(n);
 }

@@ -52,7 +52,7 @@ struct TsiResult {
 TsiResult resolve_tsi(const ContactPath& path, const geom::MeshIndex& part, const TsiOptions& options);
 
 struct SsiResult {
-  std::vector<Place> points;       ///< of the places, as few as the tolerance allows; ends are kept
+  std::vector<Place> points;  ///< of the places, as few as the tolerance allows; ends are kept
   /// Where on the path each point stands: number of the dense place before it, and the part of the way to the
   /// next one. Ascending; on a closed path it goes on over the number of places.
   std::vector<double> at;

@@ -69,26 +69,43 @@ double into_ball(Point3 q, Vec3 n, Point3 center, double radius) {
   return root < 0 || along >= 0 ? kNever : c / (-along + std::sqrt(root));
 }
 
-}  // namespace
-
-double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) const {
+/// closest(p) is the segment nearest to p, place(p, segment) the centre on it.
+template <class Closest, class Place>
+double first_entry(Point3 q, Vec3 n, double radius, const Closest& closest, const Place& place) {
   // The ball that belongs to the contact (q, n) would stand here: the nearest one faces it. (The centre
   // nearest to q says nothing at a corner of the part, about which the ball rolls at one distance.)
-  hint = closest(q + radius * n, hint);
-  double t = into_ball(q, n, place(q + radius * n, hint), radius);
+  const Point3 facing = q + radius * n;
+  double t = into_ball(q, n, place(facing, closest(facing)), radius);
   // Of all balls the one that is entered first has its centre nearest to the place where it is entered.
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds && t > 0 && t < kNever; ++round) {
     const Point3 at = q + t * n;
-    std::size_t segment = closest(at, hint);
-    const double sooner = into_ball(q, n, place(at, segment), radius);
+    const double sooner = into_ball(q, n, place(at, closest(at)), radius);
     if (!(sooner < t)) break;
     const bool done = sooner > 0.9999 * t;
     t = sooner;
-    hint = segment;
     if (done) break;
   }
   return t;
+}
+
+}  // namespace
+
+double CenterLine::entry(Point3 q, Vec3 n, double radius, std::size_t& hint) const {
+  return first_entry(
+      q, n, radius, [&](Point3 p) { return hint = closest(p, hint); },
+      [&](Point3 p, std::size_t segment) { return place(p, segment); });
+}
+
+double entry(const SegmentRuns& way, Point3 q, Vec3 n, double radius, std::size_t& hint) {
+  double d2 = 0;
+  return first_entry(
+      q, n, radius, [&](Point3 p) { return hint = way.nearest(p, hint, d2); },
+      [&](Point3 p, std::size_t segment) {
+        const Point3 a = way[segment].a, b = way[segment].b;
+        const double length2 = dot(b - a, b - a);
+        return length2 > 0 ? lerp(a, b, std::clamp(dot(p - a, b - a) / length2, 0.0, 1.0)) : a;
+      });
 }
 
 double ring_cusp(const RingAt& ring, std::size_t count, double a, double b, double radius) {

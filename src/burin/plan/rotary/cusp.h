@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "burin/plan/rotary/part.h"
+#include "burin/plan/rotary/segment_runs.h"
 
 namespace burin::rotary::detail {
 
@@ -30,6 +31,9 @@ class CenterLine {
   std::vector<geom::Point3> points_;
   bool closed_;
 };
+
+/// As CenterLine::entry, over all segments.
+double entry(const SegmentRuns& way, geom::Point3 q, geom::Vec3 n, double radius, std::size_t& hint);
 
 /// Contact number i of the ring at x, wherever it is taken from.
 using RingAt = std::function<Contact(std::size_t i, double x)>;

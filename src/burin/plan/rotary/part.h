@@ -105,7 +105,8 @@ struct PatternResult {
 
 /// rings: x = const, from x_min to x_max, as far apart as the cusp allows at the worst place between them;
 /// spiral: one open path that climbs by a ring's step per turn, with a full ring at either end; lines: along
-/// X at constant u, in zigzag. Error (range): more paths or points than allowed, with the scallop that would
+/// X at constant u, in zigzag; on a twisted part, where lines end at a slant, a ring at either end besides.
+/// Error (range): more paths or points than allowed, with the scallop that would
 /// do.
 Result<PatternResult> make_paths(const Part& part, const PatternOptions& options, Diagnostics& diagnostics);
 

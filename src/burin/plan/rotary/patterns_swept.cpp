@@ -143,6 +143,8 @@ Contact ring_contact(const Sweep& sweep, const RingNode& node, double x) {
   return lift(sweep, node, x, sweep.swept().turn_at(x), rate);
 }
 
+}  // namespace
+
 ContactPath ring_path(const Sweep& sweep, const std::vector<RingNode>& nodes, double x) {
   ContactPath path;
   path.closed = true;
@@ -150,6 +152,8 @@ ContactPath ring_path(const Sweep& sweep, const std::vector<RingNode>& nodes, do
   for (const RingNode& node : nodes) path.points.push_back(ring_contact(sweep, node, x));
   return path;
 }
+
+namespace {
 
 ContactPath spiral_path(const Sweep& sweep, const std::vector<RingNode>& nodes,
                         const std::vector<double>& xs) {

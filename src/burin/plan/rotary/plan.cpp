@@ -8,6 +8,7 @@
 #include "burin/base/text.h"
 #include "burin/geom/vec.h"
 #include "burin/plan/rotary/links.h"
+#include "burin/plan/rotary/parallel.h"
 #include "burin/plan/rotary/path_plan.h"
 #include "burin/plan/rotary/rotary.h"
 #include "burin/plan/rotary/uncut.h"
@@ -99,8 +100,15 @@ class Planner {
  private:
   void follow(const Shared& shared, const std::vector<ContactPath>& paths) {
     Linker linker(shared, plan_);
+    // Some at once: what does not depend on where the tool comes from, without holding all of it.
+    constexpr std::size_t kBatch = 16;
+    std::vector<PathBase> bases;
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      PathPlan path = plan_path(shared, paths[i], linker.at());
+      if (i % kBatch == 0) {
+        bases.assign(std::min(kBatch, paths.size() - i), {});
+        for_each_index(bases.size(), [&](std::size_t k) { bases[k] = prepare_path(shared, paths[i + k]); });
+      }
+      PathPlan path = plan_path(shared, paths[i], std::move(bases[i % kBatch]), linker.at());
       RotaryCounts& c = plan_.counts;
       RotaryQuality& q = plan_.quality;
       c.tsi += path.tsi;
@@ -109,6 +117,7 @@ class Planner {
       q.ssi_max_mm = std::max(q.ssi_max_mm, path.ssi_mm);
       q.gouge_max_mm = std::max(q.gouge_max_mm, path.gouge_mm);
       q.excess_max_mm = std::max(q.excess_max_mm, path.excess_mm);
+      uncut_.insert(uncut_.end(), path.uncut.begin(), path.uncut.end());
       linker.add(std::move(path), i);
     }
     linker.finish();
@@ -152,7 +161,7 @@ class Planner {
   // --- what could not be done
 
   void report() {
-    const double worst = uncut_excess(plan_, tool_.radius);
+    const double worst = uncut_excess(plan_, uncut_, tool_.radius);
     RotaryQuality& q = plan_.quality;
     q.excess_max_mm = std::max({q.excess_max_mm, worst, q.ssi_max_mm});
     if (plan_.counts.unreachable == 0) return;
@@ -208,6 +217,7 @@ class Planner {
   const RotaryOptions& options_;
   Diagnostics& diagnostics_;
   RotaryPlan plan_;
+  std::vector<geom::Point3> uncut_;
 };
 
 }  // namespace

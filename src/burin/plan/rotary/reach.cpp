@@ -47,78 +47,160 @@ Corners corners_of(const LeafBlock& leaf, int lane, geom::Point3 center) {
   return c;
 }
 
-/// One piece of the tool against the part, near things first: what they forbid saves opening others.
+/// The gaps between the arcs, cut into pieces no wider than `widest`.
+void cut_gaps(const Arcs& arcs, double widest, std::vector<ReachGap>& out) {
+  out.clear();
+  for (const AngleInterval& gap : arcs.gaps()) {
+    const double n = std::ceil((gap.hi - gap.lo) / widest), half = (gap.hi - gap.lo) / (2 * n);
+    ReachGap piece{};
+    for (double k = 0; k < n; ++k) {
+      const auto direction = [&](double halves, double(&to)[2]) {
+        const double angle = gap.lo + halves * half;
+        to[0] = std::cos(angle);
+        to[1] = std::sin(angle);
+      };
+      direction(2 * k, piece.from);
+      direction(2 * k + 1, piece.middle);
+      direction(2 * k + 2, piece.to);
+      piece.cos_half = std::cos(half);
+      piece.sin_half = std::sin(half);
+      out.push_back(piece);
+    }
+  }
+}
+
+/// One piece of the tool against the part. What reaches deepest into the gaps that are left is opened first:
+/// little is opened that does not reach into the gaps that remain in the end.
 class Walk {
  public:
-  Walk(const ReachTree& tree, const ReachKernels& kernels, geom::Point3 center, const Piece& piece,
-       Arcs& arcs)
-      : tree_(tree), kernels_(kernels), center_(center), piece_(piece), arcs_(arcs) {
-    query_ = {center.x, center.y, center.z, piece.h0, piece.h1, piece.radius};
+  Walk(const ReachTree& tree, const ReachKernels& kernels, geom::Point3 center, Arcs& arcs)
+      : tree_(tree), kernels_(kernels), center_(center), arcs_(arcs) {
+    const double size = tree.size + std::max({std::abs(center.x), std::abs(center.y), std::abs(center.z)});
+    rounding_mm_ = 2e-15 * size;
+    waiting_.reserve(256);
+    gaps_.reserve(8);
   }
 
-  void run() {
-    if (tree_.nodes.empty()) return;
+  void run(const Piece& piece) {
+    if (tree_.nodes.empty() || arcs_.all()) return;
+    piece_ = &piece;
+    query_ = {center_.x, center_.y, center_.z, piece.h0, piece.h1, piece.radius, nullptr, 0};
+    changed();
+    if (arcs_.none()) dive();
+    waiting_.clear();
     open(0);
-    while (top_ > 0 && !arcs_.all()) {
-      const Waiting w = stack_[--top_];
-      if (!w.unsure && arcs_.covers(w.lo, w.hi)) continue;
-      if (w.child >= kLeaf) {
-        look(tree_.leaves[w.child - kLeaf]);
+    while (!waiting_.empty() && !arcs_.all()) {
+      std::pop_heap(waiting_.begin(), waiting_.end(), less);
+      const Waiting w = waiting_.back();
+      waiting_.pop_back();
+      const NodeBlock& node = tree_.nodes[w.box / 4];
+      if (w.state != state_) {  // the gaps have become smaller since
+        kernels_.boxes(node, query_, found_);
+        if (!matters(static_cast<int>(w.box % 4))) continue;
+      }
+      const std::uint32_t child = node.child[w.box % 4];
+      if (child >= kLeaf) {
+        look(tree_.leaves[child - kLeaf]);
       } else {
-        open(w.child);
+        open(child);
       }
     }
   }
 
  private:
   struct Waiting {
-    double near2, lo, hi;
-    std::uint32_t child;
-    bool unsure;
+    double key;
+    std::uint32_t box;    ///< four times the node, and the lane
+    std::uint32_t state;  ///< of the gaps when it was looked at
   };
+  static bool less(const Waiting& a, const Waiting& b) {
+    return a.key < b.key || (a.key == b.key && a.box > b.box);
+  }
+
+  bool matters(int lane) const { return (found_.meets >> lane & 1) && found_.depth[lane] > rounding_mm_; }
+
+  /// The arcs have grown.
+  void changed() {
+    ++state_;
+    if (arcs_.none()) return;
+    cut_gaps(arcs_, piece_->h0 > 0 ? kNarrow : kWide, gaps_);
+    query_.gaps = gaps_.data();
+    query_.gap_count = static_cast<int>(gaps_.size());
+  }
+
+  /// What is to be opened first: about the angle by which the lane reaches into a gap.
+  double key(int lane) const {
+    // As long as nothing is forbidden: the nearest first.
+    if (query_.gap_count == 0) return 1e100 / (1 + found_.near2[lane]);
+    const double r = query_.radius, depth = found_.depth[lane],
+                 k2 = std::max(0.0, found_.near2[lane] - r * r);
+    return depth / (std::sqrt(k2 + 2 * r * depth) + std::sqrt(k2));
+  }
+
+  /// Straight down to the nearest triangles, so that there are gaps to begin with.
+  void dive() {
+    std::uint32_t at = 0;
+    while (at < kLeaf) {
+      kernels_.boxes(tree_.nodes[at], query_, found_);
+      int best = -1;
+      double most = 0;
+      for (int i = 0; i < 4; ++i) {
+        if (matters(i) && key(i) > most) {
+          best = i;
+          most = key(i);
+        }
+      }
+      if (best < 0) return;
+      at = tree_.nodes[at].child[best];
+    }
+    look(tree_.leaves[at - kLeaf]);
+  }
 
   void open(std::uint32_t at) {
-    const NodeBlock& node = tree_.nodes[at];
-    kernels_.boxes(node, query_, found_);
-    const int bottom = top_;
+    kernels_.boxes(tree_.nodes[at], query_, found_);
     for (int i = 0; i < 4; ++i) {
-      const bool unsure = found_.unsure >> i & 1;
-      if (!(found_.meets >> i & 1) || (!unsure && arcs_.covers(found_.lo[i], found_.hi[i]))) continue;
-      int at_most = top_++;  // the nearest comes to lie on top
-      for (; at_most > bottom && stack_[at_most - 1].near2 < found_.near2[i]; --at_most)
-        stack_[at_most] = stack_[at_most - 1];
-      stack_[at_most] = {found_.near2[i], found_.lo[i], found_.hi[i], node.child[i], unsure};
+      if (!matters(i)) continue;
+      waiting_.push_back({key(i), 4 * at + static_cast<std::uint32_t>(i), state_});
+      std::push_heap(waiting_.begin(), waiting_.end(), less);
     }
   }
 
   void look(const LeafBlock& leaf) {
     kernels_.triangles(leaf, query_, found_);
     int wanted = 0;
-    for (int i = 0; i < 4; ++i) {
-      if (!(found_.meets >> i & 1)) continue;
-      if (found_.unsure >> i & 1 || !arcs_.covers(found_.lo[i], found_.hi[i])) wanted |= 1 << i;
-    }
+    for (int i = 0; i < 4; ++i) wanted |= matters(i) ? 1 << i : 0;
     if (wanted == 0) return;
     kernels_.exact(leaf, query_, found_);
+    bool grown = false;
     for (int i = 0; i < 4; ++i) {
       if (!(wanted & found_.meets & 1 << i)) continue;
       if (found_.unsure >> i & 1) {
-        forbid_exactly(corners_of(leaf, i, center_), piece_, arcs_);
+        forbid_exactly(corners_of(leaf, i, center_), *piece_, arcs_);
       } else if (!arcs_.covers(found_.lo[i], found_.hi[i])) {
         arcs_.add(found_.lo[i], found_.hi[i]);
+      } else {
+        continue;
       }
+      grown = true;
     }
+    if (grown) changed();
   }
+
+  // A gap that is cut into narrower pieces is described better (its middle line stands nearer to the lower
+  // ends of the cylinder), which matters for cylinders that begin far from the centre.
+  static constexpr double kWide = 2.1, kNarrow = 0.8;
 
   const ReachTree& tree_;
   const ReachKernels& kernels_;
   geom::Point3 center_;
-  const Piece& piece_;
   Arcs& arcs_;
+  const Piece* piece_ = nullptr;
+  double rounding_mm_ = 0;
   ReachQuery query_;
-  ReachArcs found_;
-  Waiting stack_[ReachTree::kStack];
-  int top_ = 0;
+  ReachFound found_;
+  std::vector<Waiting> waiting_;
+  std::vector<ReachGap> gaps_;
+  std::uint32_t state_ = 0;
 };
 
 /// A holder that reaches down past the ball's centre: no arcs as the kernels have them.
@@ -149,39 +231,16 @@ ReachIndex& ReachIndex::operator=(ReachIndex&&) noexcept = default;
 AngleSet ReachIndex::reachable(geom::Point3 center, const ReachOptions& options) const {
   if (!finite(center) || !std::isfinite(options.grow_mm)) return {};
   Arcs arcs;
+  Walk walk(state_->tree, *state_->kernels, center, arcs);
   for (const Piece& piece : pieces_of(state_->tool, options)) {
     if (arcs.all()) break;
     if (piece.h0 >= 0) {
-      Walk(state_->tree, *state_->kernels, center, piece, arcs).run();
+      walk.run(piece);
     } else {
       without_tree(state_->tree, center, piece, arcs);
     }
   }
   return arcs.gaps();
-}
-
-bool ReachIndex::clear(geom::Point3 center, double lo, double hi, const ReachOptions& options) const {
-  if (!finite(center) || !std::isfinite(options.grow_mm) || !(hi - lo < 2 * geom::kPi))
-    return total(reachable(center, options)) >= 2 * geom::kPi;
-  // A range narrower than what angles may be off would close by itself.
-  constexpr double kNarrow = 100 * kSlack;
-  if (hi - lo < kNarrow) {
-    const double middle = 0.5 * (lo + hi);
-    lo = middle - 0.5 * kNarrow;
-    hi = middle + 0.5 * kNarrow;
-  }
-  Arcs arcs;
-  arcs.add(turn_of(std::cos(hi), std::sin(hi)), turn_of(std::cos(lo), std::sin(lo)));
-  const double free = total(arcs.gaps());
-  for (const Piece& piece : pieces_of(state_->tool, options)) {
-    if (piece.h0 >= 0) {
-      Walk(state_->tree, *state_->kernels, center, piece, arcs).run();
-    } else {
-      without_tree(state_->tree, center, piece, arcs);
-    }
-    if (arcs.all() || total(arcs.gaps()) < free - 10 * kSlack) return false;
-  }
-  return true;
 }
 
 }  // namespace burin::rotary

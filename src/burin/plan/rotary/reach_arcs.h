@@ -4,6 +4,7 @@
 // to plan/rotary.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -35,6 +36,7 @@ class Arcs {
   bool covers(double lo, double hi) const {
     return lo <= hi ? covers_straight(lo, hi) : covers_straight(lo, 2) && covers_straight(-2, hi);
   }
+  bool none() const { return arcs_.empty(); }
   bool all() const { return arcs_.size() == 1 && arcs_[0].lo <= -2 && arcs_[0].hi >= 2; }
   /// What is left.
   AngleSet gaps() const;

@@ -50,6 +50,10 @@ class Builder {
   ReachTree build() {
     const std::size_t n = triangles_.size();
     if (n == 0) return {};
+    for (const Corners3& t : triangles_) {
+      for (const Point3& p : t)
+        tree_.size = std::max({tree_.size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    }
     tree_.leaves.reserve(n / 3 + 1);
     tree_.nodes.reserve(n / 8 + 1);
     if (n <= 4) {
@@ -140,22 +144,30 @@ class Builder {
     return static_cast<std::uint32_t>(tree_.leaves.size() - 1);
   }
 
-  /// Turned to the direction about which the normals gather (as lines, weighted by area).
+  /// Turned to the direction about which the normals gather (as lines, weighted by area), and tilted as they
+  /// are tilted to X.
   void box(NodeBlock& out, int lane, std::size_t first, std::size_t end) const {
-    double cos2 = 0, sin2 = 0;
+    constexpr double kSteepest = 4;  // of the tilt: faces steeper to X are as good as walls across it
+    double zz = 0, yy = 0, yz = 0, xz = 0, xy = 0;
     for (std::size_t i = first; i < end; ++i) {
       const Corners3& t = triangles_[i];
       const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
       const double size = norm(n);
       if (!(size > 0) || !std::isfinite(size)) continue;
-      cos2 += (n.z * n.z - n.y * n.y) / size;
-      sin2 += 2 * n.y * n.z / size;
+      zz += n.z * n.z / size;
+      yy += n.y * n.y / size;
+      yz += n.y * n.z / size;
+      xz += n.x * n.z / size;
+      xy += n.x * n.y / size;
     }
-    const double angle = 0.5 * std::atan2(sin2, cos2), c = std::cos(angle), s = std::sin(angle);
+    const double angle = 0.5 * std::atan2(2 * yz, zz - yy), c = std::cos(angle), s = std::sin(angle);
+    const double along = zz * c * c + 2 * yz * c * s + yy * s * s;
+    const double slope = along > 0 ? -(xz * c + xy * s) / along : 0;
+    const double tilt = std::isfinite(slope) ? std::clamp(slope, -kSteepest, kSteepest) : 0;
     double x0 = kInfinity, x1 = -kInfinity, u0 = x0, u1 = x1, v0 = x0, v1 = x1;
     for (std::size_t i = first; i < end; ++i) {
       for (const Point3& p : triangles_[i]) {
-        const double u = p.z * c + p.y * s, v = p.y * c - p.z * s;
+        const double u = p.z * c + p.y * s - tilt * p.x, v = p.y * c - p.z * s;
         x0 = std::min(x0, p.x);
         x1 = std::max(x1, p.x);
         u0 = std::min(u0, u);
@@ -166,6 +178,7 @@ class Builder {
     }
     out.c[lane] = c;
     out.s[lane] = s;
+    out.tilt[lane] = tilt;
     out.x0[lane] = x0;
     out.x1[lane] = x1;
     out.u0[lane] = u0;

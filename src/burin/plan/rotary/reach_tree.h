@@ -14,8 +14,7 @@ namespace burin::rotary::detail {
 struct ReachTree {
   std::vector<NodeBlock> nodes;  ///< the first is the root; empty when there are no triangles
   std::vector<LeafBlock> leaves;
-  /// Nodes of four down from 2^32 triangles, three waiting on each level; room to spare.
-  static constexpr int kStack = 96;
+  double size = 0;  ///< largest coordinate
 };
 
 /// Triangles with corners that do not exist or are not finite are left out. The tree, and the numbers in it,

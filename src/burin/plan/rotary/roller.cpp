@@ -21,6 +21,9 @@ using Wall = Point3;
 /// Walls that face along X more than this cannot be left in the plane.
 constexpr double kLeastAcross = 0.05;
 
+/// What the ball may be left in the part when it is said to touch, times the accuracy.
+constexpr double kLeftIn = 4;
+
 /// Pushes longer than this part of the radius are looked at again.
 constexpr double kLongPush = 0.25;
 
@@ -62,9 +65,14 @@ Vec2 move_off(Point3 c, const std::vector<Wall>& walls, double radius) {
 Roller::Roller(const geom::MeshIndex& part, double radius, double accuracy_mm)
     : part_(part), radius_(radius), accuracy_(accuracy_mm), size_(part.bounds().diagonal() + 4 * radius) {}
 
-double Roller::depth(Point3 center) const {
-  const auto hit = part_.nearest(center, radius_);
-  return hit ? radius_ - hit->distance : 0;
+double Roller::room(Point3 center, Point3& nearest) const {
+  const auto hit = part_.nearest(center, 2 * radius_);
+  if (hit) nearest = hit->p;
+  return hit ? hit->distance - radius_ : radius_;
+}
+
+bool Roller::on_part(Point3 p, double within) const {
+  return part_.nearest(p, within).has_value();
 }
 
 bool Roller::push_out(Point3& c) const {
@@ -103,8 +111,9 @@ bool Roller::radially(Point3& c) const {
 /// From a clear place towards the wanted one, sliding along what is in the way, as near as it gets.
 void Roller::settle(Point3& c, Point3 wanted) const {
   constexpr int kRounds = 200;
+  constexpr double kSettled = 8;  // steps shorter than this many accuracies are not worth a look
   double step = radius_ / 4;
-  for (int round = 0; round < kRounds && step > accuracy_; ++round) {
+  for (int round = 0; round < kRounds && step > kSettled * accuracy_; ++round) {
     const double rest = distance(c, wanted);
     if (rest <= accuracy_) return;
     Point3 next = c + std::min(step, rest) * unit(wanted - c);
@@ -132,7 +141,7 @@ bool Roller::pull_in(Point3& c, geom::MeshIndex::Hit& hit) const {
     const double flat = norm(across(n));
     c = flat > 0.3 ? moved(c, (-room / flat) * across(n)) : c - room * n;
   }
-  return true;
+  return false;
 }
 
 bool Roller::touch(Point3 near, Place& place) const {
@@ -145,9 +154,13 @@ bool Roller::touch(Point3 near, Place& place) const {
   if (distance(c, near) > kLongPush * radius_) settle(c, near);
   geom::MeshIndex::Hit hit;
   if (!pull_in(c, hit)) return false;
+  const Vec3 n = unit(c - hit.p);
+  const Point3 center = hit.p + radius_ * n;
+  // What a push or a slide left in the part (past the end of it, between walls that close in) is no place.
+  if (part_.nearest(center, radius_ - kLeftIn * accuracy_)) return false;
   place.contact.p = hit.p;
-  place.contact.n = unit(c - hit.p);
-  place.center = hit.p + radius_ * place.contact.n;
+  place.contact.n = n;
+  place.center = center;
   place.state = State::moved;
   return true;
 }

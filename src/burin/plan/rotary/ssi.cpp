@@ -235,12 +235,11 @@ std::vector<Spot> closed_greedy(const Way& way) {
 /// Procedure 1 of the paper: a step that is not good is halved, along the way.
 class Halving {
  public:
-  Halving(const Way& way, double radius, double tolerance) : way_(way), tolerance_(tolerance) {
+  Halving(const Way& way, double tolerance) : way_(way), tolerance_(tolerance) {
     length_.push_back(0);
     const std::size_t last = way.closed() ? way.size() : way.size() - 1;
     for (std::size_t i = 1; i <= last; ++i) {
-      const Contact &a = way.at(i - 1).contact, &b = way.at(i).contact;
-      length_.push_back(length_.back() + distance(a.p, b.p) + radius * detail::angle_between(a.n, b.n));
+      length_.push_back(length_.back() + distance(way.at(i - 1).center, way.at(i).center));
     }
     halve({0, 0}, {last, 0}, 0);
   }
@@ -252,7 +251,10 @@ class Halving {
     const auto it = std::upper_bound(length_.begin(), length_.end(), wanted);
     const std::size_t i = std::min(std::size_t(it - length_.begin()), length_.size() - 1) - 1;
     const double l = length_[i + 1] - length_[i];
-    return {i, l > 0 ? std::clamp((wanted - length_[i]) / l, 0.0, 1.0) : 0};
+    const double f = l > 0 ? std::clamp((wanted - length_[i]) / l, 0.0, 1.0) : 0;
+    if (way_.rolls(i)) return {i, f};
+    const Spot before{i, 0}, after{i + 1, 0};
+    return (f < 0.5 && a < before) || !(after < b) ? before : after;
   }
   double length_at(Spot s) const {
     return s.f > 0 ? length_[s.i] + s.f * (length_[s.i + 1] - length_[s.i]) : length_[s.i];
@@ -330,7 +332,7 @@ SsiResult thin(const CenterPath& path, double radius, double tolerance_mm) {
         std::max(result.error_max_mm, way.error(spots[k], to, std::numeric_limits<double>::infinity()));
   }
   hand_over_excess(way, spots, result.points);
-  const Halving halving(way, radius, tolerance_mm);
+  const Halving halving(way, tolerance_mm);
   result.split = halving.splits;
   result.halving_points = halving.steps + (path.closed ? 0 : 1);
   return result;

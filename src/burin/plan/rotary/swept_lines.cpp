@@ -41,6 +41,7 @@ class LinePlanner {
 
  private:
   double cusp(double a, double b, double rate) const;
+  double longest_step(double s) const;
   CenterLine line(const SectionPoint& at, double rate, double reach) const {
     const double bend = rate * rate * (norm(at.c - geom::Point2{}) + options_.ball_radius);
     // Chords of the helix leave it by less than this part of the scallop.
@@ -89,13 +90,26 @@ double LinePlanner::cusp(double a, double b, double rate) const {
   return worst;
 }
 
+/// Twice the step on a flat surface, by the angle at which lines cross the section. A ball that gouges would
+/// seem to reach much further; what it is moved to does not.
+double LinePlanner::longest_step(double s) const {
+  const SectionPoint at = sweep_.at_length(s);
+  const geom::Vec2 c = at.c - geom::Point2{};
+  double least = std::numeric_limits<double>::infinity();
+  for (const double rate : rates_) {
+    const double q = rate * dot(at.t, c);
+    least = std::min(least, std::sqrt((1 + rate * rate * norm2(c)) / (1 + q * q)));
+  }
+  return 2 * least * flat_step(options_.ball_radius, options_.scallop);
+}
+
 bool LinePlanner::places(double s0, double s1, std::vector<SectionPoint>& out, double& guess) const {
   out.push_back(sweep_.at_length(s0, true));
   for (double s = s0; s < s1;) {
-    const double rest = s1 - s;
+    const double rest = s1 - s, most = std::min(rest, longest_step(s));
     const double step = options_.side_step ? std::min(*options_.side_step, rest)
                                            : step_for([&](double d) { return cusp(s, s + d); },
-                                                      options_.scallop, std::min(guess, rest), rest);
+                                                      options_.scallop, std::min(guess, most), most);
     if (!(step > 0) || out.size() > options_.max_paths) return false;
     guess = step;
     s = step >= rest * (1 - 1e-9) ? s1 : s + step;
@@ -204,13 +218,26 @@ Result<PatternResult> swept_lines(const Sweep& sweep, const PatternOptions& opti
   if (!at_start) places.pop_back();  // the first one again
   double points = 0;
   for (const SectionPoint& p : places) points += points_on(sweep, p, options);
-  if (places.size() > options.max_paths || points > double(options.max_points)) {
+  const bool twisted = sweep.rates().front() != 0 || sweep.rates().back() != 0;
+  const double longest = std::numeric_limits<double>::infinity();
+  if (twisted) {
+    points += 2.0 * double(count_ring_nodes(sweep, options.ball_radius, options.density_mm, longest,
+                                            options.max_points));
+  }
+  if (places.size() + 2 > options.max_paths || points > double(options.max_points)) {
     return too_many(options, double(places.size()), points / double(places.size()));
   }
+  // Where lines meet the end of the part at a slant, the ball of one is past it before it is next to its
+  // neighbour's: a ring takes what they leave.
+  std::vector<RingNode> nodes;
+  if (twisted) nodes = ring_nodes(sweep, options.ball_radius, options.density_mm, longest);
+  if (twisted) result.paths.push_back(ring_path(sweep, nodes, sweep.x_min()));
   for (std::size_t i = 0; i < places.size(); ++i) {
-    result.paths.push_back(line_path(sweep, places[i], options));
-    if (i % 2 == 1) std::reverse(result.paths.back().points.begin(), result.paths.back().points.end());
+    ContactPath path = line_path(sweep, places[i], options);
+    if (i % 2 == 1) std::reverse(path.points.begin(), path.points.end());
+    result.paths.push_back(std::move(path));
   }
+  if (twisted) result.paths.push_back(ring_path(sweep, nodes, sweep.x_max()));
   return result;
 }
 

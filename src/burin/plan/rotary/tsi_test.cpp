@@ -199,14 +199,14 @@ TEST(TsiSurface, TwistedPartsAreClearAndTouched) {
     SCOPED_TRACE(c.name);
     const Bench bench(c.swept, c.radius);
     const double x = bench.middle().points.front().p.x;
-    const double spacing = 0.04;
+    const double spacing = 0.06;
     const Samples samples(c.swept, std::max(0.0, x - 2 * c.radius), std::min(20.0, x + 2 * c.radius),
                           spacing);
     const TsiResult result = bench.resolve(bench.middle());
     expect_places_consistent(result, c.radius);
     double deepest = 0, farthest = 0;
     const std::size_t n = result.path.places.size();
-    for (std::size_t i = 0; i < n; i += 3) {
+    for (std::size_t i = 0; i < n; i += 7) {
       const Point3 a = result.path.places[i].center, b = result.path.places[(i + 1) % n].center;
       if (std::abs(a.x - x) > 1.9 * c.radius) continue;
       const double least = samples.nearest(a, c.radius + 1);
@@ -239,6 +239,49 @@ TEST(TsiSurface, LinesInASlotRestOnItsEdges) {
     EXPECT_NEAR(way_of(result.path), 12, 0.05);
   }
   EXPECT_GT(bottoms, 0u);
+}
+
+TEST(TsiSurface, ThinnedPathsOfRandomSectionsKeepTheTolerance) {
+  std::mt19937_64 random(5);
+  std::size_t points = 0, halving = 0;
+  for (int round = 0; round < 25; ++round) {
+    SCOPED_TRACE(round);
+    const ArcSpline s = cases::random_star(random);
+    if (!make_swept(cases::swept(s, 1, 0), {})) continue;
+    const double r = 1 + 0.1 * double(random() % 20);
+    const Bench bench(cases::swept(s, 3, 0), r);
+    const TsiResult resolved = bench.resolve(bench.middle());
+    const SsiResult thinned = thin(resolved.path, r, kTolerance);
+    points += thinned.points.size();
+    halving += thinned.halving_points;
+    EXPECT_LE(thinned.error_max_mm, kTolerance * (1 + 1e-9));
+    const std::size_t n = thinned.points.size();
+    double deepest = 0, excess = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Point3 a = thinned.points[i].center, b = thinned.points[(i + 1) % n].center;
+      excess = std::max(excess, thinned.points[i].excess_mm);
+      for (int k = 0; k < 16; ++k) {
+        const Point3 c = lerp(a, b, k / 16.0);
+        deepest = std::max(deepest, r - distance_to(s, {c.y, c.z}));
+      }
+    }
+    // The half of the tolerance that a place may take, and that of the step.
+    EXPECT_LE(deepest, 1.5 * kTolerance);
+    EXPECT_NEAR(excess, resolved.excess_max_mm, 1e-12);
+    // What is left of the section is within the tolerance or said.
+    for (const geom::Segment& seg : s.segments) {
+      for (int k = 0; k <= 40; ++k) {
+        const Point2 q = point_on(seg, k / 40.0);
+        double least = 1e9;
+        for (std::size_t i = 0; i < n; ++i) {
+          const Point3 a = thinned.points[i].center, b = thinned.points[(i + 1) % n].center;
+          least = std::min(least, geom::nearest_on(geom::make_line({a.y, a.z}, {b.y, b.z}), q).distance);
+        }
+        EXPECT_LE(least - r, excess + 1.5 * kTolerance);
+      }
+    }
+  }
+  EXPECT_LT(points, halving);
 }
 
 /// A shaft with a groove all round, from profile points (x, r), closed at both ends.

@@ -23,37 +23,55 @@ double distance_to(const Chord& c, geom::Point3 p) {
   return geom::distance(p, c.a + t * d);
 }
 
-}  // namespace
-
-double uncut_excess(RotaryPlan& plan, double radius) {
-  std::vector<Chord> chords;
-  double longest = 0;
-  for (const Leg& leg : plan.legs) {
-    if (leg.kind != LegKind::cut) continue;
-    for (std::size_t i = 0; i < leg.poses.size(); ++i) {
-      const geom::Point3 a = leg.poses[i > 0 ? i - 1 : 0].center, b = leg.poses[i].center;
-      chords.push_back({a, b, std::min(a.x, b.x), std::max(a.x, b.x)});
-      longest = std::max(longest, chords.back().x_max - chords.back().x_min);
+/// The cuts, by x.
+class Cuts {
+ public:
+  explicit Cuts(const RotaryPlan& plan) {
+    for (const Leg& leg : plan.legs) {
+      if (leg.kind != LegKind::cut) continue;
+      for (std::size_t i = 0; i < leg.poses.size(); ++i) {
+        const geom::Point3 a = leg.poses[i > 0 ? i - 1 : 0].center, b = leg.poses[i].center;
+        chords_.push_back({a, b, std::min(a.x, b.x), std::max(a.x, b.x)});
+        longest_ = std::max(longest_, chords_.back().x_max - chords_.back().x_min);
+      }
     }
+    std::sort(chords_.begin(), chords_.end(),
+              [](const Chord& a, const Chord& b) { return a.x_min < b.x_min; });
   }
-  std::sort(chords.begin(), chords.end(), [](const Chord& a, const Chord& b) { return a.x_min < b.x_min; });
-  double worst = 0;
-  for (RotaryPoint& point : plan.points) {
-    if (point.place.state != State::unreachable || chords.empty()) continue;
-    const geom::Point3 p = point.place.contact.p;
-    const auto middle = std::lower_bound(chords.begin(), chords.end(), p.x,
+
+  /// Distance of the nearest cut; infinite when there is none.
+  double distance(geom::Point3 p) const {
+    const auto middle = std::lower_bound(chords_.begin(), chords_.end(), p.x,
                                          [](const Chord& c, double x) { return c.x_min < x; });
     double best = std::numeric_limits<double>::infinity();
-    for (auto it = middle; it != chords.end() && it->x_min - p.x < best; ++it)
+    for (auto it = middle; it != chords_.end() && it->x_min - p.x < best; ++it)
       best = std::min(best, distance_to(*it, p));
-    for (auto it = middle; it != chords.begin();) {
+    for (auto it = middle; it != chords_.begin();) {
       --it;
-      if (p.x - it->x_min - longest > best) break;
+      if (p.x - it->x_min - longest_ > best) break;
       best = std::min(best, distance_to(*it, p));
     }
-    point.place.excess_mm = std::max(0.0, best - radius);
+    return best;
+  }
+  bool empty() const { return chords_.empty(); }
+
+ private:
+  std::vector<Chord> chords_;
+  double longest_ = 0;
+};
+
+}  // namespace
+
+double uncut_excess(RotaryPlan& plan, const std::vector<geom::Point3>& more, double radius) {
+  const Cuts cuts(plan);
+  double worst = 0;
+  if (cuts.empty()) return worst;
+  for (RotaryPoint& point : plan.points) {
+    if (point.place.state != State::unreachable) continue;
+    point.place.excess_mm = std::max(0.0, cuts.distance(point.place.contact.p) - radius);
     worst = std::max(worst, point.place.excess_mm);
   }
+  for (const geom::Point3& p : more) worst = std::max(worst, cuts.distance(p) - radius);
   return worst;
 }
 
