@@ -125,8 +125,12 @@ Result<Passes> iso_scallop_between_creases(const geom::NurbsSurface& surface, co
       here.border_hi = valley->before;
       bands[i + 1].task.border_lo = valley->behind;
     }
+    here.most_length = task.most_length - all.length;
     Result<Passes> r = iso_scallop(bands[i].sheet, here);
     if (!r) return r;
+    all.length += r->length;
+    all.given_up = r->given_up;
+    if (all.given_up) return all;
     if (r->passes.empty()) continue;
     for (const Pass& p : r->passes) nodes += node_count(p.track);
     if (nodes > kMaxNodes) return too_many_nodes();

@@ -41,6 +41,7 @@ struct PlanOptions {
   /// Distance of the quintic path from the exact tool path, at most.
   double path_mm = 1e-6;
   std::size_t max_paths = 200'000;  ///< more are refused with what would be accepted
+  unsigned threads = 1;             ///< the plan does not depend on it
 };
 
 enum class MotionKind : std::uint8_t {

@@ -168,6 +168,7 @@ Result<Passes> iso_parametric(const Sheet& sheet, const PassTask& task) {
     r.passes.push_back(constant_pass(sheet, task, w));
     nodes += node_count(r.passes.back().track);
     if (nodes > kMaxNodes) return too_many_nodes();
+    if (too_long(task, r, r.passes.back())) break;
   }
   return r;
 }

@@ -326,6 +326,7 @@ Result<Passes> iso_scallop(const Sheet& sheet, const PassTask& task) {
     if (nodes > kMaxNodes) return too_many_nodes();
     if (previous != nullptr) r.pairs.push_back(figures);
     r.passes.push_back(std::move(next));
+    if (too_long(task, r, r.passes.back())) return r;
   }
   if (!pole_hi) {
     Pass border = border_pass(sheet, task, task.border_hi, task.w.hi);

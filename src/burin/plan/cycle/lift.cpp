@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "burin/base/parallel.h"
 #include "burin/plan/cycle/bspline1.h"
 
 namespace burin::cycle {
@@ -21,6 +22,34 @@ constexpr double kShare = 0.75;
 constexpr double kNothing = 0.002;
 // The lift function gets its breaks no nearer than this part of the ball's radius.
 constexpr double kFinest = 0.004;
+
+// Places that one thread asks about at a time: few enough to share the work, enough for each to be near the
+// one before. Results depend on these two, not on the number of threads.
+constexpr std::size_t kChunk = 1024;
+constexpr std::size_t kIntervals = 64;
+
+using Workers = std::span<LiftWorker>;
+
+/// body(first, last, worker) for chunks of 0 to count.
+template <class Body>
+void in_chunks(std::size_t count, std::size_t chunk, Workers workers, Body body) {
+  parallel_for((count + chunk - 1) / chunk, static_cast<unsigned>(workers.size()),
+               [&](std::size_t task, std::size_t worker) {
+                 workers[worker].probe.forget();
+                 body(task, task * chunk, std::min(count, (task + 1) * chunk), workers[worker]);
+               });
+}
+
+/// Each of several tasks by one thread when there are enough of them, else one after the other by all.
+template <class Body>
+void share_out(std::size_t count, Workers workers, Body body) {
+  if (count < 2 * workers.size()) {
+    for (std::size_t i = 0; i < count; ++i) body(i, workers);
+    return;
+  }
+  parallel_for(count, static_cast<unsigned>(workers.size()),
+               [&](std::size_t task, std::size_t worker) { body(task, workers.subspan(worker, 1)); });
+}
 
 /// A place on the chain. `sigma`: about the length from the start of the chain.
 struct Sample {
@@ -50,20 +79,27 @@ struct Scale {
 
 class Lifter {
  public:
-  Lifter(Chain& chain, const Obstacles& obstacles, double radius, double tolerance, LiftReport& report)
-      : chain_(chain), obstacles_(obstacles), radius_(radius), tolerance_(tolerance), report_(report) {}
+  Lifter(Chain& chain, Workers workers, double radius, double tolerance, LiftReport& report)
+      : chain_(chain), workers_(workers), radius_(radius), tolerance_(tolerance), report_(report) {}
 
   void run() {
     spacing_ = std::min(std::sqrt(2 * radius_ * tolerance_), 0.25 * radius_);
     sample();
     if (!any_deep_) return;
     const std::vector<std::pair<double, double>> ranges = lifted_ranges();
+    std::vector<Chain> lifted(ranges.size());
+    std::vector<LiftPlace> highest(ranges.size());
+    share_out(ranges.size(), workers_, [&](std::size_t i, Workers workers) {
+      const auto [lo, hi] = ranges[i];
+      lifted[i] = raised(part(lo, hi), lo > 0, hi < total_, workers, highest[i]);
+    });
     Chain out;
     double from = 0;
-    for (const auto& [lo, hi] : ranges) {
-      append(out, part(from, lo));
-      append(out, raised(part(lo, hi), lo > 0, hi < total_));
-      from = hi;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      append(out, part(from, ranges[i].first));
+      append(out, std::move(lifted[i]));
+      if (highest[i].height > 0) report_.places.push_back(highest[i]);
+      from = ranges[i].second;
     }
     append(out, part(from, total_));
     close_gaps(out);
@@ -71,15 +107,16 @@ class Lifter {
   }
 
  private:
-  bool deeper(Point3 tip, double depth) const {
-    return !obstacles_.clear({tip.x, tip.y, tip.z + radius_}, depth);
+  bool deeper(Obstacles::Probe& probe, Point3 tip, double depth) const {
+    return !probe.clear({tip.x, tip.y, tip.z + radius_}, depth);
   }
 
-  double needed(Point3 tip) const { return std::max(0.0, obstacles_.lowest_tip(xy(tip), tip.z) - tip.z); }
+  static double needed(Obstacles::Probe& probe, Point3 tip) {
+    return std::max(0.0, probe.lowest_tip(xy(tip), tip.z) - tip.z);
+  }
 
   void sample() {
     double sigma = 0;
-    std::size_t counter = 0;
     for (std::size_t i = 0; i < chain_.size(); ++i) {
       const QuinticPath& path = chain_[i].track.tip;
       double length = 0;
@@ -94,35 +131,47 @@ class Lifter {
           const double x = static_cast<double>(j) / n;
           Sample s{i, path.nodes[k].t + x * h, 0, evaluate_piece(path, k, x).p, false};
           s.sigma = sigma + (s.t - t0) * scales_[i].rate;
-          check(s, counter++);
           samples_.push_back(s);
         }
       }
       sigma += length;
     }
     total_ = sigma;
+    check_all();
   }
 
-  void check(Sample& s, std::size_t counter) {
-    s.deep = deeper(s.tip, kShare * tolerance_);
-    any_deep_ = any_deep_ || s.deep;
+  void check_all() {
+    std::vector<double> gouges(samples_.size() / kChunk + 1, 0.0);
+    in_chunks(samples_.size(), kChunk, workers_,
+              [&](std::size_t chunk, std::size_t first, std::size_t last, LiftWorker& worker) {
+                for (std::size_t i = first; i < last; ++i) check(i, worker.probe, gouges[chunk]);
+              });
+    any_deep_ = std::any_of(samples_.begin(), samples_.end(), [](const Sample& s) { return s.deep; });
+    for (const double g : gouges) report_.gouge_max = std::max(report_.gouge_max, g);
+  }
+
+  void check(std::size_t i, Obstacles::Probe& probe, double& gouge_max) {
+    Sample& s = samples_[i];
+    s.deep = deeper(probe, s.tip, kShare * tolerance_);
     // How deep the rest goes is asked for now and then only.
     constexpr std::size_t kSeldom = 8;
-    if (s.deep || counter % kSeldom != 0) return;
-    const double seen = std::max(report_.gouge_max, 0.01 * tolerance_);
-    if (deeper(s.tip, seen))
-      report_.gouge_max = obstacles_.depth({s.tip.x, s.tip.y, s.tip.z + radius_}, kShare * tolerance_);
+    if (s.deep || i % kSeldom != 0) return;
+    const double seen = std::max({gouge_max, report_.gouge_max, 0.01 * tolerance_});
+    if (deeper(probe, s.tip, seen))
+      gouge_max = probe.depth({s.tip.x, s.tip.y, s.tip.z + radius_}, kShare * tolerance_);
   }
 
   // From where to where lifting is needed, grown until nothing is needed, with a run-up for the smooth start.
-  std::vector<std::pair<double, double>> lifted_ranges() const {
+  std::vector<std::pair<double, double>> lifted_ranges() {
     const double nothing = kNothing * tolerance_;
+    Obstacles::Probe& probe = workers_.front().probe;
+    probe.forget();
     std::vector<std::pair<double, double>> out;
     for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (!samples_[i].deep) continue;
       std::size_t a = i, b = i;
-      while (a > 0 && needed(samples_[a].tip) > nothing) --a;
-      while (b + 1 < samples_.size() && (samples_[b].deep || needed(samples_[b].tip) > nothing)) ++b;
+      while (a > 0 && needed(probe, samples_[a].tip) > nothing) --a;
+      while (b + 1 < samples_.size() && (samples_[b].deep || needed(probe, samples_[b].tip) > nothing)) ++b;
       const double lo = std::max(0.0, samples_[a].sigma - 2 * spacing_);
       const double hi = std::min(total_, samples_[b].sigma + 2 * spacing_);
       if (!out.empty() && lo <= out.back().second)
@@ -136,7 +185,9 @@ class Lifter {
 
   Chain part(double lo, double hi) const {
     Chain out;
-    for (std::size_t i = 0; i < chain_.size(); ++i) {
+    const auto first =
+        std::partition_point(scales_.begin(), scales_.end(), [lo](const Scale& s) { return s.sigma1 <= lo; });
+    for (auto i = static_cast<std::size_t>(first - scales_.begin()); i < chain_.size(); ++i) {
       const Scale& s = scales_[i];
       if (s.sigma0 >= hi) break;
       if (s.sigma1 <= lo) continue;
@@ -163,7 +214,7 @@ class Lifter {
   }
 
   // Which way the tool goes, compared with its contact on the surface.
-  static bool runs_back(const Chain& c, std::size_t piece, double t) {
+  static bool runs_back(const Chain& c, std::size_t piece, double t, LiftWorker& worker) {
     const ChainPiece& p = c[piece];
     if (p.sheet == nullptr) return false;
     const geom::QuinticDerivatives tip = evaluate(p.track.tip, t);
@@ -175,13 +226,13 @@ class Lifter {
     }
     const geom::QuinticDerivatives uv = evaluate(p.track.uv, t);
     const bool u = p.sheet->along() == geom::Direction::u;
-    const Contact at = p.sheet->contact(u ? uv.p.x : uv.p.y, u ? uv.p.y : uv.p.x);
+    const Contact at = worker.own(*p.sheet).contact(u ? uv.p.x : uv.p.y, u ? uv.p.y : uv.p.x);
     const Vec3 along = (u ? uv.d1.x : uv.d1.y) * at.st + (u ? uv.d1.y : uv.d1.x) * at.sw;
     return dot(tip.d1, along) < 0;
   }
 
-  Chain raised(Chain c, bool smooth_start, bool smooth_end) {
-    c = without_returns(std::move(c));
+  Chain raised(Chain c, bool smooth_start, bool smooth_end, Workers workers, LiftPlace& highest) const {
+    c = without_returns(std::move(c), workers);
     std::vector<Scale> scales;
     double total = 0;
     for (const ChainPiece& p : c) {
@@ -193,11 +244,9 @@ class Lifter {
       total += length;
     }
     if (c.empty() || !(total > 0)) return c;
-    const CubicFunction f = lift_function(c, scales, total, smooth_start, smooth_end);
-    LiftPlace place;
+    const CubicFunction f = lift_function(c, scales, total, smooth_start, smooth_end, workers);
     const std::vector<double> breaks = f.breaks();
-    for (std::size_t i = 0; i < c.size(); ++i) apply(c[i], scales[i], f, breaks, place);
-    if (place.height > 0) report_.places.push_back(place);
+    for (std::size_t i = 0; i < c.size(); ++i) apply(c[i], scales[i], f, breaks, highest);
     return c;
   }
 
@@ -210,27 +259,50 @@ class Lifter {
   }
 
   // Breaks where the needed height bends; between them it is nearly straight, as seen at three places.
-  void place_breaks(const Chain& c, const std::vector<Scale>& scales, double a, double na, double b,
-                    double nb, std::vector<std::pair<double, double>>& out) const {
+  void place_breaks(Obstacles::Probe& probe, const Chain& c, const std::vector<Scale>& scales, double a,
+                    double na, double b, double nb, std::vector<std::pair<double, double>>& out) const {
     const double mid = 0.5 * (a + b);
-    const double need = needed(tip_on(c, scales, mid));
+    const double need = needed(probe, tip_on(c, scales, mid));
     const double allowed = 0.1 * tolerance_;
     bool bends = std::abs(need - 0.5 * (na + nb)) > allowed;
     for (const double x : {0.25, 0.75}) {
       if (bends) break;
-      bends = needed(tip_on(c, scales, a + x * (b - a))) - (na + x * (nb - na)) > allowed;
+      bends = needed(probe, tip_on(c, scales, a + x * (b - a))) - (na + x * (nb - na)) > allowed;
     }
     if (bends && b - a > kFinest * radius_) {
-      place_breaks(c, scales, a, na, mid, need, out);
-      place_breaks(c, scales, mid, need, b, nb, out);
+      place_breaks(probe, c, scales, a, na, mid, need, out);
+      place_breaks(probe, c, scales, mid, need, b, nb, out);
       return;
     }
     out.emplace_back(mid, need);
     out.emplace_back(b, nb);
   }
 
+  // (place, need), ascending: the places of the grid and what is put between them.
+  std::vector<std::pair<double, double>> needs_on(const std::vector<double>& grid, const Chain& c,
+                                                  const std::vector<Scale>& scales, Workers workers) const {
+    const std::size_t intervals = grid.size() - 1;
+    std::vector<std::vector<std::pair<double, double>>> parts((intervals + kIntervals - 1) / kIntervals);
+    in_chunks(intervals, kIntervals, workers,
+              [&](std::size_t chunk, std::size_t first, std::size_t last, LiftWorker& worker) {
+                auto& at = parts[chunk];
+                const auto need = [&](double x) { return needed(worker.probe, tip_on(c, scales, x)); };
+                at.emplace_back(grid[first], need(grid[first]));
+                for (std::size_t i = first + 1; i <= last; ++i) {
+                  const auto [a, na] = at.back();
+                  place_breaks(worker.probe, c, scales, a, na, grid[i], need(grid[i]), at);
+                }
+              });
+    std::vector<std::pair<double, double>> all;
+    for (const auto& part : parts) {
+      if (!all.empty()) all.pop_back();  // the next part begins with it
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    return all;
+  }
+
   CubicFunction lift_function(const Chain& c, const std::vector<Scale>& scales, double total,
-                              bool smooth_start, bool smooth_end) const {
+                              bool smooth_start, bool smooth_end, Workers workers) const {
     // (place, need), ascending. The run-up is cut finely: three intervals at a held end stay at 0.
     const double run_up = std::min(2 * spacing_, 0.25 * total);
     std::vector<double> grid{0};
@@ -253,11 +325,7 @@ class Lifter {
         apart.push_back(x);
     grid = std::move(apart);
     if (grid.back() != total) grid.push_back(total);
-    std::vector<std::pair<double, double>> at{{0.0, needed(tip_on(c, scales, 0))}};
-    for (std::size_t i = 1; i < grid.size(); ++i) {
-      const auto [a, na] = at.back();
-      place_breaks(c, scales, a, na, grid[i], needed(tip_on(c, scales, grid[i])), at);
-    }
+    const std::vector<std::pair<double, double>> at = needs_on(grid, c, scales, workers);
     std::vector<double> breaks;
     for (const auto& p : at) breaks.push_back(p.first);
     CubicFunction f(breaks);
@@ -335,12 +403,22 @@ class Lifter {
     p.track.uv = std::move(uv);
   }
 
+  /// Where the tool may run backwards.
+  struct Place {
+    std::size_t piece;
+    double t;
+    Point3 tip;
+    Vec3 forward;
+    bool back;
+  };
   // Leaves out the parts of the chain where the tool would run backwards, with as much before and after as
   // brings both ends together.
-  Chain without_returns(Chain c) const;
+  static void look_back(const Chain& c, double fine, std::size_t piece, LiftWorker& worker,
+                        std::vector<Place>& places);
+  Chain without_returns(Chain c, Workers workers) const;
 
   Chain& chain_;
-  const Obstacles& obstacles_;
+  Workers workers_;
   double radius_, tolerance_;
   LiftReport& report_;
   double spacing_ = 0.1;
@@ -350,28 +428,28 @@ class Lifter {
   std::vector<Sample> samples_;
 };
 
-Chain Lifter::without_returns(Chain c) const {
-  struct Place {
-    std::size_t piece;
-    double t;
-    Point3 tip;
-    Vec3 forward;
-    bool back;
-  };
-  std::vector<Place> places;
-  const double fine = 0.25 * spacing_;
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    const QuinticPath& path = c[i].track.tip;
-    for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
-      const int n = 1 + static_cast<int>(std::min(1e5, piece_chord(path, k) / fine));
-      const double h = path.nodes[k + 1].t - path.nodes[k].t;
-      for (int j = 0; j < n; ++j) {
-        const double t = path.nodes[k].t + h * (j + 0.5) / n;
-        const geom::QuinticDerivatives d = evaluate(path, t);
-        places.push_back({i, t, d.p, d.d1, runs_back(c, i, t)});
-      }
+void Lifter::look_back(const Chain& c, double fine, std::size_t piece, LiftWorker& worker,
+                       std::vector<Place>& places) {
+  const QuinticPath& path = c[piece].track.tip;
+  for (std::size_t k = 0; k + 1 < path.nodes.size(); ++k) {
+    const int n = 1 + static_cast<int>(std::min(1e5, piece_chord(path, k) / fine));
+    const double h = path.nodes[k + 1].t - path.nodes[k].t;
+    for (int j = 0; j < n; ++j) {
+      const double x = (j + 0.5) / n, t = path.nodes[k].t + h * x;
+      const geom::QuinticDerivatives d = evaluate_piece(path, k, x);
+      places.push_back({piece, t, d.p, d.d1, runs_back(c, piece, t, worker)});
     }
   }
+}
+
+Chain Lifter::without_returns(Chain c, Workers workers) const {
+  std::vector<std::vector<Place>> seen(c.size());
+  const double fine = 0.25 * spacing_;
+  in_chunks(c.size(), 1, workers, [&](std::size_t piece, std::size_t, std::size_t, LiftWorker& worker) {
+    look_back(c, fine, piece, worker, seen[piece]);
+  });
+  std::vector<Place> places;
+  for (const std::vector<Place>& p : seen) places.insert(places.end(), p.begin(), p.end());
   if (std::none_of(places.begin(), places.end(), [](const Place& p) { return p.back; })) return c;
   // Index ranges (a, b) of places that are joined by a straight line.
   std::vector<std::pair<std::size_t, std::size_t>> bridges;
@@ -436,9 +514,21 @@ Chain Lifter::without_returns(Chain c) const {
 
 }  // namespace
 
-void lift(Chain& chain, const Obstacles& obstacles, double radius, double tolerance, LiftReport& report) {
+void lift(Chain& chain, Workers workers, double radius, double tolerance, LiftReport& report) {
   if (chain.empty()) return;
-  Lifter(chain, obstacles, radius, tolerance, report).run();
+  Lifter(chain, workers, radius, tolerance, report).run();
+}
+
+void lift(std::vector<Chain>& chains, const Obstacles& obstacles, unsigned threads, double radius,
+          double tolerance, LiftReport& report) {
+  std::vector<LiftWorker> workers(std::max(1U, threads), LiftWorker(obstacles));
+  std::vector<LiftReport> reports(chains.size());
+  share_out(chains.size(), workers,
+            [&](std::size_t i, Workers own) { lift(chains[i], own, radius, tolerance, reports[i]); });
+  for (const LiftReport& r : reports) {
+    report.places.insert(report.places.end(), r.places.begin(), r.places.end());
+    report.gouge_max = std::max(report.gouge_max, r.gouge_max);
+  }
 }
 
 }  // namespace burin::cycle

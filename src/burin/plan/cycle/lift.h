@@ -2,6 +2,8 @@
 // Lifting a tool path to where it cuts nothing it should not.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "burin/plan/cycle/cycle.h"
@@ -31,9 +33,29 @@ struct LiftReport {
   double gouge_max = 0;           ///< what was left below the tolerance
 };
 
+/// Scratch of one thread.
+class LiftWorker {
+ public:
+  explicit LiftWorker(const Obstacles& obstacles) : probe(obstacles) {}
+  /// A copy of the sheet that no other thread evaluates.
+  const Sheet& own(const Sheet& sheet) {
+    if (of_ != &sheet) copy_.emplace(sheet), of_ = &sheet;
+    return *copy_;
+  }
+  Obstacles::Probe probe;
+
+ private:
+  const Sheet* of_ = nullptr;
+  std::optional<Sheet> copy_;
+};
+
 /// Where the ball would cut deeper than `tolerance` the chain is raised to the no-gouge height (C2 along
 /// every piece); where the path would turn back on itself, because the surface is bent more sharply than the
-/// ball, the part that runs backwards is left out.
-void lift(Chain& chain, const Obstacles& obstacles, double radius, double tolerance, LiftReport& report);
+/// ball, the part that runs backwards is left out. One thread for each worker; the result does not depend on
+/// their number.
+void lift(Chain& chain, std::span<LiftWorker> workers, double radius, double tolerance, LiftReport& report);
+/// All chains, as one after the other.
+void lift(std::vector<Chain>& chains, const Obstacles& obstacles, unsigned threads, double radius,
+          double tolerance, LiftReport& report);
 
 }  // namespace burin::cycle

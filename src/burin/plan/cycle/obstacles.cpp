@@ -146,17 +146,25 @@ void Obstacles::add_rectangle(const Region& region, std::uint32_t index, Interva
   c.v = v;
   c.middle = s.p[1][1];
   c.normal = unit(cross(s.p[2][2] - s.p[0][0], s.p[2][0] - s.p[0][2]));
+  c.half_u = 0.5 * (s.p[1][2] - s.p[1][0]);
+  c.half_v = 0.5 * (s.p[2][1] - s.p[0][1]);
+  const Vec3 longer = norm(c.half_u) >= norm(c.half_v) ? c.half_u : c.half_v;
+  c.side = unit(longer - dot(longer, c.normal) * c.normal);
+  const Vec3 across = cross(c.normal, c.side);
   for (const auto& row : s.p)
     for (const Point3 q : row) {
+      const Vec3 e = q - c.middle;
       c.box.add(q);
-      c.extent = std::max(c.extent, distance(q, c.middle));
-      c.thickness = std::max(c.thickness, std::abs(dot(q - c.middle, c.normal)));
+      c.extent_side = std::max(c.extent_side, std::abs(dot(e, c.side)));
+      c.extent_across = std::max(c.extent_across, std::abs(dot(e, across)));
+      c.thickness = std::max(c.thickness, std::abs(dot(e, c.normal)));
     }
-  // A cell without area has no plane: it is a ball of its extent.
-  if (norm(c.normal) == 0) c.thickness = c.extent;
   const double bulge = std::max({bu, bv, twist}) * kSampled;
+  c.plane = flat && norm(c.normal) > 0;
+  // Of a cell without area the axes vanish that it has no extent along: nothing is ruled out by them.
   c.thickness = kSampled * c.thickness;
-  c.extent += bulge;
+  c.extent_side += bulge;
+  c.extent_across += bulge;
   c.box = c.box.grown(bulge);
   cells_.push_back(c);
 }
@@ -207,113 +215,185 @@ std::uint32_t Obstacles::build_node(std::vector<std::uint32_t>& order, std::size
   return static_cast<std::uint32_t>(index);
 }
 
-double Obstacles::climb(const Cell& cell, Point2 p, double reach, double floor) const {
-  geom::SurfaceEvaluator& evaluator = evaluators_[cell.surface];
-  // The highest of five points to start from.
-  double u = 0.5 * (cell.u.lo + cell.u.hi), v = 0.5 * (cell.v.lo + cell.v.hi);
-  double best = touch(cell.middle, p, reach);
-  for (const double cu : {cell.u.lo, cell.u.hi})
-    for (const double cv : {cell.v.lo, cell.v.hi}) {
-      const double z = touch(evaluator.point(cu, cv), p, reach);
-      if (z > best) best = z, u = cu, v = cv;
-    }
-  double height = std::max(floor, best);
-  if (!(height > -kInfinity)) height = cell.middle.z + reach;
+namespace {
+
+struct Place {
+  double u = 0, v = 0;
+};
+
+/// The step from a place of a cell towards the one nearest to c: Newton, or Gauss-Newton where the distance
+/// bends the wrong way; clamped to the cell.
+enum class Step { none, newton, gauss_newton };
+Step step_to_nearest(const geom::SurfaceDerivatives& d, Vec3 e, Interval u, Interval v, Place at,
+                     Place& step) {
+  double uu = dot(d.du, d.du) - dot(e, d.duu), vv = dot(d.dv, d.dv) - dot(e, d.dvv);
+  double uv = dot(d.du, d.dv) - dot(e, d.duv);
+  Step kind = Step::newton;
+  if (!(uu > 0 && vv > 0 && uu * vv - uv * uv > 1e-9 * uu * vv)) {
+    uu = dot(d.du, d.du), vv = dot(d.dv, d.dv), uv = dot(d.du, d.dv);
+    if (!(uu * vv - uv * uv > 1e-12 * uu * vv)) return Step::none;
+    kind = Step::gauss_newton;
+  }
+  const double ru = dot(e, d.du), rv = dot(e, d.dv), det = uu * vv - uv * uv;
+  step = {(ru * vv - rv * uv) / det, (rv * uu - ru * uv) / det};
+  if (at.u + step.u < u.lo || at.u + step.u > u.hi) {
+    step.u = std::clamp(at.u + step.u, u.lo, u.hi) - at.u;
+    step.v = (rv - step.u * uv) / vv;
+  }
+  if (at.v + step.v < v.lo || at.v + step.v > v.hi) {
+    step.v = std::clamp(at.v + step.v, v.lo, v.hi) - at.v;
+    step.u = std::clamp(at.u + (ru - step.v * uv) / uu, u.lo, u.hi) - at.u;
+  }
+  return kind;
+}
+
+/// Of a parallelogram middle + s a + t b, |s|, |t| <= 1: the (s, t) nearest to e from the middle, nearly (the
+/// clamping of one is not seen by the other).
+Place on_parallelogram(Vec3 a, Vec3 b, Vec3 e) {
+  const double aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), det = aa * bb - ab * ab;
+  if (!(det > 1e-12 * aa * bb)) return {};
+  const double ra = dot(e, a), rb = dot(e, b);
+  return {std::clamp((ra * bb - rb * ab) / det, -1.0, 1.0), std::clamp((rb * aa - ra * ab) / det, -1.0, 1.0)};
+}
+
+}  // namespace
+
+Obstacles::Probe::Probe(const Obstacles& obstacles)
+    : obstacles_(&obstacles), evaluators_(obstacles.evaluators_.size()) {}
+
+geom::SurfaceEvaluator& Obstacles::Probe::evaluator(std::uint32_t surface) {
+  std::optional<geom::SurfaceEvaluator>& e = evaluators_[surface];
+  if (!e) e.emplace(obstacles_->evaluators_[surface]);
+  return *e;
+}
+
+double Obstacles::Probe::visit(std::uint32_t index, Point2 p, double reach, double floor) {
+  const Cell& cell = obstacles_->cells_[index];
+  geom::SurfaceEvaluator& surface = evaluator(cell.surface);
+  Place at{0.5 * (cell.u.lo + cell.u.hi), 0.5 * (cell.v.lo + cell.v.hi)};
+  double best = -kInfinity;
+  double height = floor;
+  if (cell.plane && floor >= cell.box.hi.z) {
+    // Below the centre: the nearest place is about that of the cell's plane.
+    const Place on = on_parallelogram(cell.half_u, cell.half_v, Point3{p.x, p.y, floor} - cell.middle);
+    at.u = std::clamp(at.u + 0.5 * on.u * cell.u.length(), cell.u.lo, cell.u.hi);
+    at.v = std::clamp(at.v + 0.5 * on.v * cell.v.length(), cell.v.lo, cell.v.hi);
+  } else {
+    // The shank may touch it anywhere: the highest of five points to start from.
+    best = touch(cell.middle, p, reach);
+    for (const double cu : {cell.u.lo, cell.u.hi})
+      for (const double cv : {cell.v.lo, cell.v.hi}) {
+        const double z = touch(surface.point(cu, cv), p, reach);
+        if (z > best) best = z, at = {cu, cv};
+      }
+    height = std::max(floor, best);
+    if (!(height > -kInfinity)) height = cell.middle.z + reach;
+  }
   // The nearest point of the cell to the centre; when the ball overlaps it the centre rises until it
   // touches; as the touching height is largest at the nearest point, this converges quadratically.
   constexpr int kIterations = 16;
   double last_gain = kInfinity;
   for (int i = 0; i < kIterations; ++i) {
-    const Point3 c{p.x, p.y, height};
-    const geom::SurfaceDerivatives d = evaluator.derivatives(u, v);
-    const double z = touch(d.p, p, reach);
-    if (z > best) best = z;
+    const geom::SurfaceDerivatives d = surface.derivatives(at.u, at.v);
+    best = std::max(best, touch(d.p, p, reach));
     if (best > height) {
       last_gain = best - height;
       height = best;
     }
-    const Vec3 e = c - d.p;
-    double uu = dot(d.du, d.du) - dot(e, d.duu), vv = dot(d.dv, d.dv) - dot(e, d.dvv);
-    double uv = dot(d.du, d.dv) - dot(e, d.duv);
-    if (!(uu > 0 && vv > 0 && uu * vv - uv * uv > 1e-9 * uu * vv)) {
-      uu = dot(d.du, d.du), vv = dot(d.dv, d.dv), uv = dot(d.du, d.dv);
-      if (!(uu * vv - uv * uv > 1e-12 * uu * vv)) break;
-    }
-    const double ru = dot(e, d.du), rv = dot(e, d.dv), det = uu * vv - uv * uv;
-    double du = (ru * vv - rv * uv) / det, dv = (rv * uu - ru * uv) / det;
-    if (u + du < cell.u.lo || u + du > cell.u.hi) {
-      du = std::clamp(u + du, cell.u.lo, cell.u.hi) - u;
-      dv = (rv - du * uv) / vv;
-    }
-    if (v + dv < cell.v.lo || v + dv > cell.v.hi) {
-      dv = std::clamp(v + dv, cell.v.lo, cell.v.hi) - v;
-      du = std::clamp(u + (ru - dv * uv) / uu, cell.u.lo, cell.u.hi) - u;
-    }
-    const double moved = norm(du * d.du + dv * d.dv);
-    u += du;
-    v += dv;
+    const Vec3 e = Point3{p.x, p.y, height} - d.p;
+    Place step;
+    const Step kind = step_to_nearest(d, e, cell.u, cell.v, at, step);
+    if (kind == Step::none) break;
+    const double moved = norm(step.u * d.du + step.v * d.dv);
+    // Out of reach by more than there is left to go.
+    if (height == floor && kind == Step::newton && norm(e) - reach > 2 * moved) break;
+    at = {at.u + step.u, at.v + step.v};
     // The height is second-order in the place: 1e-6 mm off is nothing.
     if (moved < 1e-6 && last_gain < 1e-10) break;
     if (moved < 1e-6) last_gain = 0;
   }
+  if (best > floor) last_ = index;
   return std::max(best, floor);
 }
 
-double Obstacles::highest(Point2 p, double reach, double floor, double stop_above) const {
-  if (nodes_.empty()) return floor;
+double Obstacles::Probe::highest(Point2 p, double reach, double floor, double stop_above) {
+  const std::vector<Node>& nodes = obstacles_->nodes_;
+  if (nodes.empty()) return floor;
   const double reach2 = reach * reach;
-  std::uint32_t stack[128];
+  const std::uint32_t first = last_;
+  if (first != kNone) {
+    floor = visit(first, p, reach, floor);
+    if (floor > stop_above) return floor;
+  }
+  // The ball at the floor, and the shank above it, reach the box.
+  const auto may_raise = [&](const Box3& box, double away2) {
+    const double below = std::max(0.0, floor - box.hi.z);
+    return away2 + below * below < reach2;
+  };
+  struct Waiting {
+    std::uint32_t node = 0;
+    double away2 = 0;
+  };
+  Waiting stack[128];
   int size = 0;
-  stack[size++] = 0;
+  stack[size++] = {0, across2(nodes[0].box, p)};
   while (size > 0) {
-    const Node& node = nodes_[stack[--size]];
-    const double away2 = across2(node.box, p);
-    if (away2 >= reach2) continue;
-    if (node.box.hi.z + std::sqrt(reach2 - away2) <= floor) continue;
+    const Waiting next = stack[--size];
+    const Node& node = nodes[next.node];
+    if (!may_raise(node.box, next.away2)) continue;
     if (node.count == 0) {
-      const std::uint32_t left = static_cast<std::uint32_t>(&node - nodes_.data()) + 1;
-      // The higher one first: it raises the floor for the other.
-      const bool left_first = nodes_[left].box.hi.z >= nodes_[node.right].box.hi.z;
-      stack[size++] = left_first ? node.right : left;
-      stack[size++] = left_first ? left : node.right;
+      Waiting left{next.node + 1, across2(nodes[next.node + 1].box, p)};
+      Waiting right{node.right, across2(nodes[node.right].box, p)};
+      const bool go_left = may_raise(nodes[left.node].box, left.away2);
+      const bool go_right = may_raise(nodes[right.node].box, right.away2);
+      // The one that may touch higher first: it raises the floor for the other.
+      if (go_left && go_right &&
+          nodes[left.node].box.hi.z + std::sqrt(reach2 - left.away2) <
+              nodes[right.node].box.hi.z + std::sqrt(reach2 - right.away2))
+        std::swap(left, right);
+      if (go_right) stack[size++] = right;
+      if (go_left) stack[size++] = left;
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Cell& cell = cells_[i];
-      const double off2 = across2(cell.box, p);
-      if (off2 >= reach2 || cell.box.hi.z + std::sqrt(reach2 - off2) <= floor) continue;
-      if (floor > -kInfinity && cell.box.hi.z <= floor) {
-        // All of it is below the centre: it is free when the disc that holds it is out of reach.
-        const Vec3 e = Point3{p.x, p.y, floor} - cell.middle;
-        const double h = dot(e, cell.normal), all2 = dot(e, e);
-        const double up = std::max(0.0, std::abs(h) - cell.thickness);
-        const double side = std::max(0.0, std::sqrt(std::max(0.0, all2 - h * h)) - cell.extent);
-        if (up * up + side * side >= reach2) continue;
-      }
-      floor = std::max(floor, climb(cell, p, reach, floor));
+      if (i == first) continue;
+      const Cell& cell = obstacles_->cells_[i];
+      if (!may_raise(cell.box, across2(cell.box, p))) continue;
+      if (cell.box.hi.z <= floor && out_of_reach(cell, {p.x, p.y, floor}, reach2)) continue;
+      floor = visit(i, p, reach, floor);
       if (floor > stop_above) return floor;
     }
   }
   return floor;
 }
 
-bool Obstacles::clear(Point3 centre, double depth) const {
-  const double reach = radius_ + stock_ - depth;
+// All of the cell is below the centre: it is free when its box along its own axes is out of reach.
+bool Obstacles::out_of_reach(const Cell& cell, Point3 centre, double reach2) {
+  const Vec3 e = centre - cell.middle;
+  const double up = std::max(0.0, std::abs(dot(e, cell.normal)) - cell.thickness);
+  const double side = std::max(0.0, std::abs(dot(e, cell.side)) - cell.extent_side);
+  const double across = std::max(0.0, std::abs(dot(e, cross(cell.normal, cell.side))) - cell.extent_across);
+  return up * up + side * side + across * across >= reach2;
+}
+
+bool Obstacles::Probe::clear(Point3 centre, double depth) {
+  const double reach = obstacles_->radius_ + obstacles_->stock_ - depth;
   if (!(reach > 0)) return true;
   // Heights are found to 1e-10; a hair above is not above.
   constexpr double kHair = 1e-9;
   return highest(xy(centre), reach, centre.z, centre.z + kHair) <= centre.z + kHair;
 }
 
-double Obstacles::lowest_tip(Point2 p) const {
+double Obstacles::Probe::lowest_tip(Point2 p) {
   return lowest_tip(p, -kInfinity);
 }
 
-double Obstacles::lowest_tip(Point2 p, double floor) const {
-  return highest(p, radius_ + stock_, floor + radius_, kInfinity) - radius_;
+double Obstacles::Probe::lowest_tip(Point2 p, double floor) {
+  const double radius = obstacles_->radius_;
+  return highest(p, radius + obstacles_->stock_, floor + radius, kInfinity) - radius;
 }
 
-double Obstacles::depth(Point3 centre, double most) const {
+double Obstacles::Probe::depth(Point3 centre, double most) {
   constexpr double kFine = 1e-6;
   if (clear(centre, kFine)) return 0;
   double lo = kFine, hi = most;

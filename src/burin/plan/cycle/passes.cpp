@@ -63,6 +63,14 @@ Pass constant_pass(const Sheet& sheet, const PassTask& task, double w) {
   return p;
 }
 
+bool too_long(const PassTask& task, Passes& passes, const Pass& pass) {
+  for (const TrackPiece& p : pass.track)
+    for (std::size_t k = 0; k + 1 < p.tip.nodes.size(); ++k)
+      passes.length += distance(p.tip.nodes[k].p, p.tip.nodes[k + 1].p);
+  passes.given_up = passes.length > task.most_length;
+  return passes.given_up;
+}
+
 Error too_many_paths(const PassTask& task) {
   return {
       ErrorCode::range,

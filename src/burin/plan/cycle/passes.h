@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct PassTask {
   double tight_step = 0;  ///< largest side step where the ball does not fit: that of a plane
   double path_mm = 1e-6;
   std::size_t max_paths = 0;
+  /// Longer plans are given up: another one that is shorter is at hand.
+  double most_length = std::numeric_limits<double>::infinity();
 };
 
 struct PairFigures {
@@ -34,6 +37,8 @@ struct PairFigures {
 struct Passes {
   std::deque<Pass> passes;         ///< a deque: Before points into it
   std::vector<PairFigures> pairs;  ///< pairs[i]: between passes i and i + 1
+  double length = 0;               ///< of the passes so far, by their chords: not too long
+  bool given_up = false;           ///< `length` is above most_length; the rest was not planned
 };
 
 Result<Passes> iso_parametric(const Sheet& sheet, const PassTask& task);
@@ -66,6 +71,8 @@ double use_of_limits(const PassTask& task, const Cusp& c);
 /// A first guess of the step in w at t: flat surface, cut by a cusp of height S.
 double first_step(const Sheet& sheet, const PassTask& task, double t, double w);
 Pass constant_pass(const Sheet& sheet, const PassTask& task, double w);
+/// Counts a pass that is finished; true when the plan is given up with it.
+bool too_long(const PassTask& task, Passes& passes, const Pass& pass);
 Error too_many_paths(const PassTask& task);
 Error too_many_nodes();
 

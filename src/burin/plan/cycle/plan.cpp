@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <deque>
+#include <memory>
 #include <new>
+#include <optional>
 #include <set>
 
+#include "burin/base/parallel.h"
 #include "burin/base/text.h"
 #include "burin/plan/cycle/cycle.h"
+#include "burin/plan/cycle/estimate.h"
 #include "burin/plan/cycle/extend.h"
 #include "burin/plan/cycle/order.h"
 
@@ -59,8 +63,25 @@ struct SheetPlan {
   std::vector<Chain> chains;
   std::vector<PairFigures> pairs;
   std::size_t paths = 0;
-  double length = 0;  ///< cut, links and the ways over the safety height
+  double length = 0;      ///< cut, links and the ways over the safety height
+  bool given_up = false;  ///< longer than another plan that is at hand
 };
+
+/// A direction that the paths of a surface may run in.
+struct Candidate {
+  geom::NurbsSurface whole;  ///< continued over its edges where paths run over them
+  std::unique_ptr<Sheet> sheet;
+  PassTask task;
+  double estimate = 0;  ///< length of its iso-parametric paths
+  bool empty() const { return !(task.t.length() > 0 && task.w.length() > 0); }
+};
+
+// A direction whose iso-parametric paths would be this much longer than those of the other one is not
+// planned: they are as much denser in some places than in others, which I2 inherits.
+constexpr double kClearlyLonger = 1.5;
+// And this much longer not even when the shorter one leaves too much somewhere: it would cost many times the
+// time, and leaves too much as well where its paths crowd.
+constexpr double kFarLonger = 3;
 
 class SurfacePlanner {
  public:
@@ -71,6 +92,7 @@ class SurfacePlanner {
         diagnostics_(diagnostics),
         radius_(0.5 * options.tool_diameter) {
     for (const geom::JoinedSurface& s : composite.surfaces) regions_.emplace_back(s, trims);
+    sheets_.resize(2 * composite.surfaces.size());
     // The cusp is found from the path: a thousandth of it must not be the path's error.
     path_mm_ = std::min(options.path_mm, 1e-3 * options.scallop);
   }
@@ -79,9 +101,9 @@ class SurfacePlanner {
     SurfacePlan plan;
     std::vector<Chain> chains;
     std::size_t steep = 0;
-    for (std::size_t i = 0; i < composite_.surfaces.size(); ++i) {
-      const double sign = side_that_looks_up(composite_.surfaces[i].surface);
-      if (sign == 0) {
+    std::vector<std::optional<Result<SheetPlan>>> sheets = plan_all();
+    for (std::size_t i = 0; i < sheets.size(); ++i) {
+      if (!sheets[i]) {
         ++steep;
         diagnostics_.left_out("surface_steep",
                               "surface " + std::to_string(i + 1) +
@@ -89,9 +111,8 @@ class SurfacePlanner {
                                   "(its normal would have to look up somewhere)");
         continue;
       }
-      Result<SheetPlan> s = best_plan(i, sign);
-      if (!s) return s.error();
-      take(*s, i, plan, chains);
+      if (!*sheets[i]) return sheets[i]->error();
+      take(**sheets[i], i, plan, chains);
     }
     if (steep == composite_.surfaces.size())
       return Error{ErrorCode::geometry,
@@ -113,13 +134,55 @@ class SurfacePlanner {
   }
 
  private:
-  Result<SheetPlan> best_plan(std::size_t i, double sign) {
-    if (options_.along != Along::automatic)
-      return plan_sheet(i, sign, options_.along == Along::u ? Direction::u : Direction::v);
-    Result<SheetPlan> u = plan_sheet(i, sign, Direction::u);
-    Result<SheetPlan> v = plan_sheet(i, sign, Direction::v);
-    if (!u) return v;
-    if (!v) return u;
+  // Nothing for a surface that does not look up.
+  std::vector<std::optional<Result<SheetPlan>>> plan_all() {
+    const std::size_t count = composite_.surfaces.size();
+    std::vector<std::optional<Result<SheetPlan>>> sheets(count);
+    // Surfaces side by side, or else the two directions of one.
+    const bool many = count >= 2 * options_.threads;
+    const auto plan_one = [&](std::size_t i, std::size_t /*worker*/) {
+      const double sign = side_that_looks_up(composite_.surfaces[i].surface);
+      if (sign != 0) sheets[i].emplace(best_plan(i, sign, many ? 1 : options_.threads));
+    };
+    if (!many) {
+      for (std::size_t i = 0; i < count; ++i) plan_one(i, 0);
+      return sheets;
+    }
+    // What cannot be done ends the run as it would one after the other.
+    parallel_for(count, options_.threads, plan_one);
+    return sheets;
+  }
+
+  Result<SheetPlan> best_plan(std::size_t i, double sign, unsigned threads) {
+    if (options_.along != Along::automatic) {
+      const Direction along = options_.along == Along::u ? Direction::u : Direction::v;
+      return plan_sheet(i, candidate(i, sign, along));
+    }
+    std::array<Candidate, 2> c{candidate(i, sign, Direction::u), candidate(i, sign, Direction::v)};
+    for (Candidate& k : c)
+      if (!k.empty()) k.estimate = estimate(*k.sheet, k.task, regions_[i], Method::iso_parametric).length;
+    const std::size_t first = c[1].estimate < c[0].estimate ? 1 : 0, other = 1 - first;
+    const bool clear = c[other].estimate > kClearlyLonger * c[first].estimate;
+    const bool far = c[other].estimate > kFarLonger * c[first].estimate;
+    std::array<std::optional<Result<SheetPlan>>, 2> plans;
+    if (clear || threads < 2) {
+      plans[first].emplace(plan_sheet(i, std::move(c[first])));
+      const Result<SheetPlan>& done = *plans[first];
+      const bool good = done && most_left(*done) <= kAbove * options_.scallop;
+      if (done && !done->chains.empty() && (far || (good && clear))) return std::move(*plans[first]);
+      // Trimmed passes are shorter than what is counted while they are planned.
+      if (good && regions_[i].whole()) c[other].task.most_length = done->length;
+      plans[other].emplace(plan_sheet(i, std::move(c[other])));
+    } else {
+      parallel_for(2, threads,
+                   [&](std::size_t k, std::size_t) { plans[k].emplace(plan_sheet(i, std::move(c[k]))); });
+    }
+    return shorter(std::move(*plans[0]), std::move(*plans[1]));
+  }
+
+  Result<SheetPlan> shorter(Result<SheetPlan> u, Result<SheetPlan> v) const {
+    if (!u || (v && u->given_up)) return v;
+    if (!v || v->given_up) return u;
     // A direction that leaves too much somewhere is only taken when the other leaves more.
     const double left_u = most_left(*u), left_v = most_left(*v), allowed = kAbove * options_.scallop;
     if (std::max(left_u, left_v) > allowed) return left_v < left_u ? std::move(v) : std::move(u);
@@ -134,23 +197,38 @@ class SurfacePlanner {
     return most;
   }
 
-  Result<SheetPlan> plan_sheet(std::size_t index, double sign, Direction along) {
-    const Region& region = regions_[index];
-    SheetPlan out;
-    out.along = along == Direction::u ? Along::u : Along::v;
+  Candidate candidate(std::size_t index, double sign, Direction along) const {
+    Candidate c;
     const geom::NurbsSurface& surface = composite_.surfaces[index].surface;
-    const bool over_edges = options_.method == Method::iso_scallop && region.whole();
+    const bool over_edges = options_.method == Method::iso_scallop && regions_[index].whole();
     // What stands on an edge between two paths is at most half a step off; steps are longer in hollows.
     const double over = std::sqrt(8 * radius_ * options_.scallop);
-    const geom::NurbsSurface whole = over_edges ? continued(surface, along, over) : surface;
-    sheets_.emplace_back(whole, along, sign, radius_, options_.stock, surface.domain(along));
-    const Sheet& sheet = sheets_.back();
-    const PassTask task = task_of(sheet, region);
-    if (!(task.t.length() > 0 && task.w.length() > 0)) return out;
+    c.whole = over_edges ? continued(surface, along, over) : surface;
+    c.sheet = std::make_unique<Sheet>(c.whole, along, sign, radius_, options_.stock, surface.domain(along));
+    c.task = task_of(*c.sheet, regions_[index]);
+    return c;
+  }
+
+  Result<SheetPlan> plan_sheet(std::size_t index, Candidate candidate) {
+    const Region& region = regions_[index];
+    const Direction along = candidate.sheet->along();
+    const PassTask& task = candidate.task;
+    SheetPlan out;
+    out.along = along == Direction::u ? Along::u : Along::v;
+    if (candidate.empty()) return out;
+    // Chains point to it.
+    std::unique_ptr<Sheet>& kept = sheets_[2 * index + (along == Direction::u ? 0 : 1)];
+    kept = std::move(candidate.sheet);
+    const Sheet& sheet = *kept;
+    const geom::NurbsSurface& whole = candidate.whole;
+    const Estimate size = estimate(sheet, task, region, options_.method);
+    if (const Result<void> ok = check_size(sheet, task, size); !ok) return ok.error();
     Result<Passes> passes = options_.method == Method::iso_parametric
                                 ? iso_parametric(sheet, task)
                                 : iso_scallop_between_creases(whole, sheet, task);
     if (!passes) return passes.error();
+    out.given_up = passes->given_up;
+    if (out.given_up) return out;
     out.pairs = passes->pairs;
     out.paths = passes->passes.size();
     std::vector<Stretch> parts = stretches(*passes, region, along);
@@ -211,12 +289,11 @@ class SurfacePlanner {
     // Cells this flat are told apart from the tolerance without a closer look.
     const Obstacles obstacles(composite_, regions_, radius_, options_.stock, 0.25 * options_.tolerance_mm);
     LiftReport report;
+    lift(chains, obstacles, options_.threads, radius_, options_.tolerance_mm, report);
     double highest = obstacles.top();
-    for (Chain& c : chains) {
-      lift(c, obstacles, radius_, options_.tolerance_mm, report);
+    for (const Chain& c : chains)
       for (const ChainPiece& p : c)
         for (const geom::QuinticNode& n : p.track.tip.nodes) highest = std::max(highest, n.p.z);
-    }
     plan.gouge_max_mm = report.gouge_max;
     std::set<std::pair<int, int>> lifted;
     for (const Chain& c : chains)
@@ -286,7 +363,7 @@ class SurfacePlanner {
   double radius_;
   double path_mm_ = 1e-6;
   std::vector<Region> regions_;
-  std::deque<Sheet> sheets_;  ///< chains point into it
+  std::vector<std::unique_ptr<Sheet>> sheets_;  ///< of both directions; chains point to them
 };
 
 }  // namespace

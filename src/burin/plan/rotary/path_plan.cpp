@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "burin/geom/vec.h"
+#include "burin/plan/rotary/parallel.h"
 
 namespace burin::rotary {
 namespace {
@@ -15,35 +16,54 @@ using geom::Point3;
 constexpr int kMaxRounds = 16;
 // Nodes on either side of a new one that may turn again, halved every round; the others keep their angle.
 constexpr std::size_t kWindow = 24;
+// A ball this near (mm) to where its contact wants it touches there.
+constexpr double kOnContact = 1e-6;
 
 double turned_by(double a) {
   return std::remainder(a, 2 * geom::kPi);
 }
 
+double line_accuracy(const Shared& shared) {
+  return 0.25 * shared.options.tolerance_mm;
+}
+
+Node node_at(const Shared& shared, const CenterLine& line, double s) {
+  Node node;
+  node.s = s;
+  node.place = line.at(s);
+  Place& p = node.place;
+  // Between places of different contacts the ball stands on what is nearest.
+  const double radius = shared.tool.radius;
+  if (geom::distance(p.contact.p + radius * p.contact.n, p.center) > kOnContact) {
+    if (const auto hit = shared.mesh.nearest(p.center, 2 * radius); hit && hit->distance > 0) {
+      p.contact.n = unit(p.center - hit->p);
+      p.contact.p = p.center - radius * p.contact.n;
+    }
+  }
+  find_reach(shared, node);
+  return node;
+}
+
 class PathPlanner {
  public:
-  PathPlanner(const Shared& shared, const ContactPath& path, const AxisPose& start)
-      : shared_(shared), path_(path), start_(start) {
-    const RotaryOptions& o = shared.options;
-    TsiResult tsi = resolve_tsi(path, shared.mesh, {o.tsi, shared.tool.radius, o.tolerance_mm});
-    out_.tsi = tsi.interfering;
-    out_.excess_mm = tsi.excess_max_mm;
-    out_.closed = tsi.path.closed;
-    dense_ = std::move(tsi.path);
+  PathPlanner(const Shared& shared, const ContactPath& path, PathBase base, const AxisPose& start)
+      : shared_(shared),
+        path_(path),
+        start_(start),
+        dense_(std::move(base.dense)),
+        line_(dense_, shared.tool.radius, line_accuracy(shared)),
+        nodes_(std::move(base.nodes)) {
+    out_.tsi = base.tsi;
+    out_.excess_mm = base.excess_mm;
+    out_.closed = dense_.closed;
+    out_.ssi_mm = base.ssi.error_max_mm;
+    out_.ssi_split = base.ssi.split;
+    out_.halving_points = base.ssi.halving_points;
   }
 
   PathPlan run() {
-    const SsiResult ssi = thin(dense_, shared_.tool.radius, shared_.options.tolerance_mm);
-    out_.ssi_mm = ssi.error_max_mm;
-    out_.ssi_split = ssi.split;
-    out_.halving_points = ssi.halving_points;
-    const CenterLine line(dense_, shared_.tool.radius, 0.25 * shared_.options.tolerance_mm);
-    line_ = &line;
-    std::vector<double> at;
-    for (const double number : ssi.at) at.push_back(line.length_of(number));
-    if (at.empty()) return std::move(out_);
-    begin_well(at);
-    for (const double s : at) nodes_.push_back(made(s));
+    if (nodes_.empty()) return std::move(out_);
+    begin_well();
     for (int round = 0; round < kMaxRounds; ++round) {
       choose();
       if (!refine(round)) break;
@@ -53,31 +73,30 @@ class PathPlanner {
   }
 
  private:
-  Node made(double s) const {
-    Node node;
-    node.s = s;
-    node.place = line_->at(s);
-    find_reach(shared_, node);
-    return node;
-  }
-
   /// A closed path begins where the tool stands, and comes back there.
-  void begin_well(std::vector<double>& at) const {
+  void begin_well() {
     if (!dense_.closed) return;
-    if (at.size() > 1 && at.back() - at.front() >= line_->length() * (1 - 1e-12)) at.pop_back();
+    const double length = line_.length();
+    if (nodes_.size() > 1 && nodes_.back().s - nodes_.front().s >= length * (1 - 1e-12)) nodes_.pop_back();
     std::size_t best = 0;
-    double nearest_mm = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const double d = geom::distance(line_->at(at[i]).center, start_.center);
-      if (d < nearest_mm) {
-        nearest_mm = d;
+    double least = std::numeric_limits<double>::infinity();
+    // Where the axis has hardly more than a turn, rings begin at its end and are cut to and fro.
+    const RotaryOptions& o = shared_.options;
+    const bool narrow = o.theta_max - o.theta_min < 4 * geom::kPi;
+    const double seam = (o.theta_min + o.theta_max) / 2 - geom::kPi;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const double d = narrow ? std::abs(turned_by(nodes_[i].initial - seam))
+                              : geom::distance(nodes_[i].place.center, start_.center);
+      if (d < least) {
+        least = d;
         best = i;
       }
     }
-    std::rotate(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(best), at.end());
-    for (std::size_t i = 1; i < at.size(); ++i)
-      if (at[i] < at[0]) at[i] += line_->length();
-    at.push_back(at[0] + line_->length());
+    std::rotate(nodes_.begin(), nodes_.begin() + static_cast<std::ptrdiff_t>(best), nodes_.end());
+    for (std::size_t i = 1; i < nodes_.size(); ++i)
+      if (nodes_[i].s < nodes_[0].s) nodes_[i].s += length;
+    nodes_.push_back(nodes_.front());
+    nodes_.back().s += length;
   }
 
   // --- axes
@@ -108,12 +127,12 @@ class PathPlanner {
     o.smooth = shared_.options.smooth && shared_.section == nullptr;
     o.lean = shared_.options.lean;
     o.start = start_.theta;
-    out_.chain = choose_axes(layers, o);
+    const AxisChain chain = dense_.closed ? round_and_round(layers, o) : choose_axes(layers, o);
     std::vector<char> broken(nodes_.size(), 0);
-    for (const std::size_t b : out_.chain.breaks) broken[b] = 1;
+    for (const std::size_t b : chain.breaks) broken[b] = 1;
     broken_ = std::move(broken);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      double theta = out_.chain.theta[i];
+      double theta = chain.theta[i];
       // A pinned angle stays to the last bit, so that what was proven about it stays proven.
       if (!free_.empty() && !free_[i] && std::abs(turned_by(theta - nodes_[i].theta)) < 1e-6)
         theta = nodes_[i].theta + 2 * geom::kPi * std::round((theta - nodes_[i].theta) / (2 * geom::kPi));
@@ -123,6 +142,23 @@ class PathPlanner {
       }
       nodes_[i].theta = theta;
     }
+  }
+  /// A closed path comes back with the angle it began with (and whole turns): of three times round the middle
+  /// one is taken.
+  static AxisChain round_and_round(std::vector<Layer> layers, const AxisOptions& options) {
+    if (layers.size() < 3) return choose_axes(layers, options);
+    const std::size_t n = layers.size() - 1;
+    // The last one is the first one again, with the length that leads to it.
+    const Layer seam = layers.back();
+    for (int copy = 0; copy < 2; ++copy)
+      for (std::size_t i = 1; i <= n; ++i) layers.push_back(i == n ? seam : Layer(layers[i]));
+    const AxisChain all = choose_axes(layers, options);
+    AxisChain out;
+    const double turns = 2 * geom::kPi * std::round((all.theta[n] - options.start) / (2 * geom::kPi));
+    for (std::size_t i = n; i <= 2 * n; ++i) out.theta.push_back(all.theta[i] - turns);
+    for (const std::size_t b : all.breaks)
+      if (b > n && b <= 2 * n) out.breaks.push_back(b - n);
+    return out;
   }
   static void pin(Layer& layer, double theta) {
     const double t = turned_by(theta);
@@ -141,7 +177,7 @@ class PathPlanner {
     const double h2 = dot(chord, chord);
     double worst = 0;
     if (!(h2 > 0)) return 0;
-    line_->between(a.s, b.s, [&](const Place& p) {
+    line_.between(a.s, b.s, [&](const Place& p) {
       double t = std::clamp(dot(p.center - from.center, chord) / h2, 0.0, 1.0);
       const AxisPose first = rotary::between(from, to, t);
       t = std::clamp(t + dot(p.center - first.center, chord) / h2, 0.0, 1.0);
@@ -153,65 +189,92 @@ class PathPlanner {
     return worst;
   }
 
-  bool proven(Node& a, Node& b) {
+  struct Proof {
+    bool clear = false;
+    double ssi = 0, depth = 0;
+  };
+  Proof prove(const Node& a, const Node& b) const {
+    Proof out;
     const double tolerance = shared_.options.tolerance_mm;
-    const double ssi = undercut(a, b);
-    if (ssi > tolerance) return false;
+    out.ssi = undercut(a, b);
+    if (out.ssi > tolerance) return out;
     MotionOptions o;
     o.tolerance_mm = o.ball_mm = tolerance;
     const MoveCheck check = check_move(a.pose(), b.pose(), shared_.body, shared_.mesh, shared_.tool, o);
-    if (!check.clear) return false;
-    out_.ssi_mm = std::max(out_.ssi_mm, ssi);
-    out_.gouge_mm = std::max(out_.gouge_mm, check.ball_depth);
-    return true;
+    out.clear = check.clear;
+    out.depth = check.ball_depth;
+    return out;
+  }
+  bool both_open(std::size_t i) const { return nodes_[i - 1].open() && nodes_[i].open(); }
+
+  /// Every step that is to be cut and is not proven yet.
+  void prove_all() {
+    std::vector<std::size_t> steps;
+    for (std::size_t i = 1; i < nodes_.size(); ++i)
+      if (both_open(i) && !broken_[i] && !nodes_[i].cut) steps.push_back(i);
+    std::vector<Proof> proofs(steps.size());
+    for_each_index(steps.size(),
+                   [&](std::size_t k) { proofs[k] = prove(nodes_[steps[k] - 1], nodes_[steps[k]]); });
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      nodes_[steps[k]].cut = proofs[k].clear;
+      if (!proofs[k].clear) continue;
+      out_.ssi_mm = std::max(out_.ssi_mm, proofs[k].ssi);
+      out_.gouge_mm = std::max(out_.gouge_mm, proofs[k].depth);
+    }
   }
 
   /// Proves the steps; where that fails a node comes in between. False when nothing was added.
   bool refine(int round) {
+    prove_all();
+    const double shortest = std::min(shared_.options.tolerance_mm, 0.01 * shared_.tool.radius);
     std::vector<Node> next;
     std::vector<std::size_t> added;
-    const double shortest = std::min(shared_.options.tolerance_mm, 0.01 * shared_.tool.radius);
     next.reserve(nodes_.size());
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (i > 0) {
-        Node &a = nodes_[i - 1], &b = nodes_[i];
-        const bool both = a.open() && b.open();
-        if (both && !broken_[i] && !b.cut) b.cut = proven(a, b);
+        const Node &a = nodes_[i - 1], &b = nodes_[i];
         // Where the axis breaks or an unreachable stretch begins, the place is found by halving too.
-        const bool wanted = both ? !b.cut : a.open() != b.open() || b.s - a.s > shared_.tool.radius;
+        const bool wanted = both_open(i) ? !b.cut : a.open() != b.open() || b.s - a.s > shared_.tool.radius;
         if (wanted && b.s - a.s > 2 * shortest) {
-          next.push_back(made((a.s + b.s) / 2));
-          added.push_back(next.size() - 1);
+          Node node;
+          node.s = (a.s + b.s) / 2;
+          added.push_back(next.size());
+          next.push_back(std::move(node));
         }
       }
       next.push_back(nodes_[i]);
     }
-    if (added.empty()) return false;
     nodes_ = std::move(next);
+    if (added.empty()) return false;
+    for_each_index(added.size(),
+                   [&](std::size_t k) { nodes_[added[k]] = node_at(shared_, line_, nodes_[added[k]].s); });
+    set_free(added, round);
+    return true;
+  }
+
+  /// The neighbours of new nodes may turn again.
+  void set_free(const std::vector<std::size_t>& added, int round) {
     free_.assign(nodes_.size(), 0);
+    const std::size_t window = std::max<std::size_t>(2, kWindow >> round);
     for (const std::size_t a : added) {
       nodes_[a].cut = false;
       if (a + 1 < nodes_.size()) nodes_[a + 1].cut = false;
-      const std::size_t window = std::max<std::size_t>(2, kWindow >> round);
       const std::size_t lo = a > window ? a - window : 0, hi = std::min(nodes_.size(), a + window + 1);
       std::fill(free_.begin() + static_cast<std::ptrdiff_t>(lo),
                 free_.begin() + static_cast<std::ptrdiff_t>(hi), char{1});
     }
-    return true;
   }
 
   void finish() {
     bool moved = false;
     // The last round may have turned angles after its proofs, or stopped by its number.
+    prove_all();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       Node& node = nodes_[i];
-      if (i == 0 || !node.open() || !nodes_[i - 1].open() || broken_[i])
-        node.cut = false;
-      else if (!node.cut)
-        node.cut = proven(nodes_[i - 1], node);
+      if (i == 0 || !both_open(i) || broken_[i]) node.cut = false;
       if (!node.open()) node.place.state = State::unreachable;
       if (i == 0 || node.cut) continue;
-      line_->between(nodes_[i - 1].s, node.s, [&](const Place& p) {
+      line_.between(nodes_[i - 1].s, node.s, [&](const Place& p) {
         out_.uncut.push_back(p.contact.p);
         moved = moved || p.state == State::moved;
       });
@@ -227,7 +290,7 @@ class PathPlanner {
   const ContactPath& path_;
   AxisPose start_;
   CenterPath dense_;
-  const CenterLine* line_ = nullptr;
+  CenterLine line_;
   PathPlan out_;
   std::vector<Node> nodes_;
   std::vector<char> free_, broken_;
@@ -239,19 +302,14 @@ void find_reach(const Shared& shared, Node& node) {
   const Point3 c = node.place.center;
   node.initial = std::atan2(c.y, c.z);
   // Moves are proven, a place alone is not: where the ball itself is in the part, no axis helps.
-  const bool sunk = shared.options.tsi == Tsi::surface &&
-                    shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
+  const bool sunk = shared.mesh.nearest(c, shared.tool.radius - shared.options.tolerance_mm).has_value();
   if (sunk) node.place.state = State::unreachable;
   if (node.place.state == State::unreachable) {
     node.initial_interferes = true;
     return;
   }
-  // A ball that sinks in is not cut with, not even at a single place.
-  const double depth = shared.options.tolerance_mm;
-  const bool gouges = depth < shared.tool.radius && shared.mesh.nearest(c, shared.tool.radius - depth);
-  AngleSet exact = gouges ? AngleSet{} : shared.reach.reachable(c);
+  AngleSet exact = shared.reach.reachable(c);
   node.initial_interferes = !contains(exact, node.initial);
-  if (gouges) return;
   // In a slot as wide as the tool the ball sinks in by what resolve_tsi allows, and the shank with it.
   ReachOptions lenient;
   lenient.grow_mm = -shared.options.tolerance_mm / 2;
@@ -269,8 +327,29 @@ void find_reach(const Shared& shared, Node& node) {
   node.reachable[0].hi = node.reachable[0].lo + 2 * kHalf;
 }
 
-PathPlan plan_path(const Shared& shared, const ContactPath& path, const AxisPose& start) {
-  return PathPlanner(shared, path, start).run();
+PathBase prepare_path(const Shared& shared, const ContactPath& path) {
+  const RotaryOptions& o = shared.options;
+  const double radius = shared.tool.radius;
+  PathBase out;
+  TsiResult tsi = resolve_tsi(path, shared.mesh, {o.tsi, radius, o.tolerance_mm});
+  out.tsi = tsi.interfering;
+  out.excess_mm = tsi.excess_max_mm;
+  out.dense = std::move(tsi.path);
+  out.ssi = thin(out.dense, radius, o.tolerance_mm);
+  const CenterLine line(out.dense, radius, line_accuracy(shared));
+  out.nodes.resize(out.ssi.at.size());
+  for_each_index(out.nodes.size(), [&](std::size_t i) {
+    Node node;
+    node.s = line.length_of(out.ssi.at[i]);
+    node.place = out.ssi.points[i];
+    find_reach(shared, node);
+    out.nodes[i] = std::move(node);
+  });
+  return out;
+}
+
+PathPlan plan_path(const Shared& shared, const ContactPath& path, PathBase base, const AxisPose& start) {
+  return PathPlanner(shared, path, std::move(base), start).run();
 }
 
 }  // namespace burin::rotary

@@ -79,12 +79,21 @@ struct PathPlan {
   double gouge_mm = 0;  ///< largest depth of the ball, upper bound
   double excess_mm = 0;
   std::size_t tsi = 0, ssi_split = 0, halving_points = 0;
-  AxisChain chain;
   std::vector<geom::Point3> uncut;  ///< contact points between nodes that are not joined by a cut
 };
 
+/// What is known about a path before it is known where the tool comes from.
+struct PathBase {
+  CenterPath dense;
+  SsiResult ssi;
+  std::size_t tsi = 0;
+  double excess_mm = 0;
+  std::vector<Node> nodes;  ///< CL points with their reachable angles
+};
+PathBase prepare_path(const Shared& shared, const ContactPath& path);
+
 /// `start`: where the axis and the ball stood before.
-PathPlan plan_path(const Shared& shared, const ContactPath& path, const AxisPose& start);
+PathPlan plan_path(const Shared& shared, const ContactPath& path, PathBase base, const AxisPose& start);
 
 /// Reachable angles of a place, by the method asked for; and whether the paper's first axis interferes.
 void find_reach(const Shared& shared, Node& node);

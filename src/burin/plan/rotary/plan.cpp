@@ -8,6 +8,7 @@
 #include "burin/base/text.h"
 #include "burin/geom/vec.h"
 #include "burin/plan/rotary/links.h"
+#include "burin/plan/rotary/parallel.h"
 #include "burin/plan/rotary/path_plan.h"
 #include "burin/plan/rotary/rotary.h"
 #include "burin/plan/rotary/uncut.h"
@@ -99,8 +100,15 @@ class Planner {
  private:
   void follow(const Shared& shared, const std::vector<ContactPath>& paths) {
     Linker linker(shared, plan_);
+    // Some at once: what does not depend on where the tool comes from, without holding all of it.
+    constexpr std::size_t kBatch = 16;
+    std::vector<PathBase> bases;
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      PathPlan path = plan_path(shared, paths[i], linker.at());
+      if (i % kBatch == 0) {
+        bases.assign(std::min(kBatch, paths.size() - i), {});
+        for_each_index(bases.size(), [&](std::size_t k) { bases[k] = prepare_path(shared, paths[i + k]); });
+      }
+      PathPlan path = plan_path(shared, paths[i], std::move(bases[i % kBatch]), linker.at());
       RotaryCounts& c = plan_.counts;
       RotaryQuality& q = plan_.quality;
       c.tsi += path.tsi;

@@ -253,29 +253,4 @@ AngleSet ReachIndex::reachable(geom::Point3 center, const ReachOptions& options)
   return arcs.gaps();
 }
 
-bool ReachIndex::clear(geom::Point3 center, double lo, double hi, const ReachOptions& options) const {
-  if (!finite(center) || !std::isfinite(options.grow_mm) || !(hi - lo < 2 * geom::kPi))
-    return total(reachable(center, options)) >= 2 * geom::kPi;
-  // A range narrower than what angles may be off would close by itself.
-  constexpr double kNarrow = 100 * kSlack;
-  if (hi - lo < kNarrow) {
-    const double middle = 0.5 * (lo + hi);
-    lo = middle - 0.5 * kNarrow;
-    hi = middle + 0.5 * kNarrow;
-  }
-  Arcs arcs;
-  arcs.add(turn_of(std::cos(hi), std::sin(hi)), turn_of(std::cos(lo), std::sin(lo)));
-  const double free = total(arcs.gaps());
-  Walk walk(state_->tree, *state_->kernels, center, arcs);
-  for (const Piece& piece : pieces_of(state_->tool, options)) {
-    if (piece.h0 >= 0) {
-      walk.run(piece, free - 10 * kSlack);
-    } else {
-      without_tree(state_->tree, center, piece, arcs);
-    }
-    if (arcs.all() || total(arcs.gaps()) < free - 10 * kSlack) return false;
-  }
-  return true;
-}
-
 }  // namespace burin::rotary

@@ -54,9 +54,6 @@ class ReachIndex {
   /// Everything at once. Never fails; not-a-number in, nothing out. Thread safe; the answer does not depend
   /// on earlier questions.
   AngleSet reachable(geom::Point3 center, const ReachOptions& options = {}) const;
-  /// Whether all of [lo, hi] (any number of turns) is reachable: what lies beside that range is never looked
-  /// at, so that it costs a fraction of reachable().
-  bool clear(geom::Point3 center, double lo, double hi, const ReachOptions& options = {}) const;
 
  private:
   struct State;

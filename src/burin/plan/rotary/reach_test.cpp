@@ -95,38 +95,6 @@ TEST(Reach, EndsAsMeasuredOnRandomParts) {
   EXPECT_GT(none, kParts / 50);
 }
 
-// The question about a range is answered as the whole set would answer it.
-TEST(Reach, RangesAreClearAsTheSetSays) {
-  Random r(7);
-  int yes = 0, no = 0;
-  for (int k = 0; k < 100; ++k) {
-    const Mesh m = random_part(r, 30, 6);
-    const model::BallTool tool = random_tool(r);
-    const ReachIndex index(m, tool);
-    const Point3 center{r.between(0, 20), r.between(-25, 25), r.between(-25, 25)};
-    const ReachOptions options{.grow_mm = r.between(-0.2, 0.5)};
-    const AngleSet set = index.reachable(center, options);
-    for (int n = 0; n < 40; ++n) {
-      const double lo = r.between(-9, 9), hi = lo + (n % 4 == 0 ? 0 : r.between(0, 1));
-      const auto nearest_end = [&] {
-        double least = 10;
-        for (const AngleInterval& i : set)
-          for (const double end : {i.lo, i.hi})
-            for (const double at : {lo, hi})
-              least = std::min(least, std::abs(std::remainder(end - at, 2 * kPi)));
-        return least;
-      };
-      if (!set.empty() && nearest_end() < 1e-4) continue;
-      bool inside = true;
-      for (int s = 0; s <= 200; ++s) inside &= contains(set, lo + (hi - lo) * s / 200);
-      ASSERT_EQ(index.clear(center, lo, hi, options), inside) << k << " " << lo << " to " << hi;
-      (inside ? yes : no) += 1;
-    }
-  }
-  EXPECT_GT(yes, 100);
-  EXPECT_GT(no, 100);
-}
-
 /// Ends of two sets, matched in order; one may be the other across the seam.
 void expect_near(const AngleSet& a, const AngleSet& b, double turned, double within) {
   ASSERT_EQ(a.size(), b.size());

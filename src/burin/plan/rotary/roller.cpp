@@ -65,9 +65,14 @@ Vec2 move_off(Point3 c, const std::vector<Wall>& walls, double radius) {
 Roller::Roller(const geom::MeshIndex& part, double radius, double accuracy_mm)
     : part_(part), radius_(radius), accuracy_(accuracy_mm), size_(part.bounds().diagonal() + 4 * radius) {}
 
-double Roller::room(Point3 center) const {
+double Roller::room(Point3 center, Point3& nearest) const {
   const auto hit = part_.nearest(center, 2 * radius_);
+  if (hit) nearest = hit->p;
   return hit ? hit->distance - radius_ : radius_;
+}
+
+bool Roller::on_part(Point3 p, double within) const {
+  return part_.nearest(p, within).has_value();
 }
 
 bool Roller::push_out(Point3& c) const {
@@ -106,8 +111,9 @@ bool Roller::radially(Point3& c) const {
 /// From a clear place towards the wanted one, sliding along what is in the way, as near as it gets.
 void Roller::settle(Point3& c, Point3 wanted) const {
   constexpr int kRounds = 200;
+  constexpr double kSettled = 8;  // steps shorter than this many accuracies are not worth a look
   double step = radius_ / 4;
-  for (int round = 0; round < kRounds && step > accuracy_; ++round) {
+  for (int round = 0; round < kRounds && step > kSettled * accuracy_; ++round) {
     const double rest = distance(c, wanted);
     if (rest <= accuracy_) return;
     Point3 next = c + std::min(step, rest) * unit(wanted - c);

@@ -103,8 +103,13 @@ class Resolver {
     // cannot be asked for.
     return std::max(half - o.deflection_mm, 1.05 * o.deflection_mm);
   }
-  bool good(const Contact& c) const { return -roller_.room(c.p + radius_ * c.n) <= allowed_; }
-  Place standing(std::size_t i) const;
+  bool good(const Contact& c) const {
+    Point3 nearest;
+    return -roller_.room(c.p + radius_ * c.n, nearest) <= allowed_;
+  }
+  bool touches(const Contact& c, double room, Point3 nearest) const;
+  Place standing(const Contact& c, bool touches) const;
+  Place end_place(const Contact& c) const;
   Contact last_good(Contact good_end, Contact bad_end) const;
   void bridge(std::size_t first, std::size_t end);
   void follow(std::size_t first, std::size_t end);
@@ -117,8 +122,7 @@ class Resolver {
   double radius_, spacing_, allowed_;
   Roller roller_;
   std::vector<Contact> contacts_;
-  std::vector<std::uint8_t> original_, good_;
-  std::vector<double> room_;
+  std::vector<std::uint8_t> original_, good_, touches_;
   TsiResult result_;
 };
 
@@ -166,9 +170,10 @@ void Resolver::append(std::vector<Place>& places, std::vector<Contact> left, con
 
 /// Bad contacts [first, end) between two good ones.
 void Resolver::bridge(std::size_t first, std::size_t end) {
-  const Place from = detail::place_at(last_good(at(first - 1 + contacts_.size()), at(first)), radius_);
-  const Place to = detail::place_at(last_good(at(end), at(end - 1)), radius_);
+  const Place from = end_place(last_good(at(first - 1 + contacts_.size()), at(first)));
+  const Place to = end_place(last_good(at(end), at(end - 1)));
   result_.path.places.push_back(from);
+  result_.moved += (from.state == State::moved) + (to.state == State::moved);
   const std::vector<Contact> left = skipped(first, end);
   std::vector<Place> places;
   const auto angle = [](Point3 p) { return std::atan2(p.z, p.y); };
@@ -226,24 +231,39 @@ void Resolver::follow(std::size_t first, std::size_t end) {
   append(places, left, nullptr, nullptr);
 }
 
-/// The place at a contact that does not gouge. Between contacts that follow the part only roughly (lines on
-/// meshes) the ball may hang free: it goes in until it touches.
-Place Resolver::standing(std::size_t i) const {
-  Place place = detail::place_at(at(i), radius_);
-  if (room_[i % room_.size()] > 0.5 * options_.tolerance_mm) {
-    Place touching = place;
-    if (roller_.touch(place.center, touching)) return touching;
-  }
-  return place;
+/// Whether a ball that gouges nothing touches at its contact. Between contacts that follow the part only
+/// roughly (lines on meshes) it may hang free, or touch elsewhere.
+bool Resolver::touches(const Contact& c, double room, Point3 nearest) const {
+  const double half = 0.5 * options_.tolerance_mm;
+  if (room > half) return false;
+  // A ball that touches within the tolerance touches about this far around its contact.
+  if (distance(nearest, c.p) < std::sqrt(8 * radius_ * options_.tolerance_mm)) return true;
+  return roller_.on_part(c.p, half);
+}
+
+Place Resolver::standing(const Contact& c, bool touches) const {
+  Place place = detail::place_at(c, radius_);
+  if (touches) return place;
+  Place touching = place;
+  return roller_.touch(place.center, touching) ? touching : place;
+}
+
+/// At either end of a stretch, where the contact lies between two given ones.
+Place Resolver::end_place(const Contact& c) const {
+  Point3 nearest = c.p;
+  const double room = roller_.room(c.p + radius_ * c.n, nearest);
+  return standing(c, touches(c, room, nearest));
 }
 
 TsiResult Resolver::run() {
   const std::size_t n = contacts_.size();
-  room_.reserve(n);
+  touches_.reserve(n);
   good_.reserve(n);
   for (std::size_t i = 0; i < n; ++i) {
-    room_.push_back(roller_.room(contacts_[i].p + radius_ * contacts_[i].n));
-    good_.push_back(-room_[i] <= allowed_);
+    Point3 nearest = contacts_[i].p;
+    const double room = roller_.room(contacts_[i].p + radius_ * contacts_[i].n, nearest);
+    good_.push_back(-room <= allowed_);
+    touches_.push_back(good_[i] && touches(contacts_[i], room, nearest));
     result_.interfering += original_[i] && !good_[i];
   }
   std::size_t start = 0;
@@ -257,7 +277,7 @@ TsiResult Resolver::run() {
   for (std::size_t i = start; i < start + n;) {
     if (!result_.path.closed && i >= n) break;
     if (good_[i % n]) {
-      result_.path.places.push_back(standing(i));
+      result_.path.places.push_back(standing(at(i), touches_[i % n] != 0));
       result_.moved += result_.path.places.back().state == State::moved;
       ++i;
       continue;

@@ -32,7 +32,9 @@ class Roller {
   /// False when there is no such place. u and w of `place` stay.
   bool touch(geom::Point3 near, Place& place) const;
   /// Distance from the ball to the mesh, negative where the ball holds some of it; radius when there is more.
-  double room(geom::Point3 center) const;
+  /// `nearest` is the place of the mesh that is nearest, when there is one.
+  double room(geom::Point3 center, geom::Point3& nearest) const;
+  bool on_part(geom::Point3 p, double within) const;
 
  private:
   bool push_out(geom::Point3& c) const;
