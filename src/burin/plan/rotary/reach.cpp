@@ -47,10 +47,11 @@ Corners corners_of(const LeafBlock& leaf, int lane, geom::Point3 center) {
   return c;
 }
 
-/// The gaps between the arcs, cut into pieces no wider than `widest`.
-void cut_gaps(const Arcs& arcs, double widest, std::vector<ReachGap>& out) {
+/// The gaps between the arcs, cut into pieces no wider than `widest`. Returns the sum of their widths.
+double cut_gaps(const Arcs& arcs, double widest, std::vector<ReachGap>& out) {
   out.clear();
-  for (const AngleInterval& gap : arcs.gaps()) {
+  const AngleSet gaps = arcs.gaps();
+  for (const AngleInterval& gap : gaps) {
     const double n = std::ceil((gap.hi - gap.lo) / widest), half = (gap.hi - gap.lo) / (2 * n);
     ReachGap piece{};
     for (double k = 0; k < n; ++k) {
@@ -67,6 +68,7 @@ void cut_gaps(const Arcs& arcs, double widest, std::vector<ReachGap>& out) {
       out.push_back(piece);
     }
   }
+  return total(gaps);
 }
 
 /// One piece of the tool against the part. What reaches deepest into the gaps that are left is opened first:
@@ -81,7 +83,8 @@ class Walk {
     gaps_.reserve(8);
   }
 
-  void run(const Piece& piece) {
+  /// Stops early when less than `enough` (radians) is left.
+  void run(const Piece& piece, double enough = 0) {
     if (tree_.nodes.empty() || arcs_.all()) return;
     piece_ = &piece;
     query_ = {center_.x, center_.y, center_.z, piece.h0, piece.h1, piece.radius, nullptr, 0};
@@ -89,7 +92,7 @@ class Walk {
     if (arcs_.none()) dive();
     waiting_.clear();
     open(0);
-    while (!waiting_.empty() && !arcs_.all()) {
+    while (!waiting_.empty() && free_ > enough) {
       std::pop_heap(waiting_.begin(), waiting_.end(), less);
       const Waiting w = waiting_.back();
       waiting_.pop_back();
@@ -123,7 +126,7 @@ class Walk {
   void changed() {
     ++state_;
     if (arcs_.none()) return;
-    cut_gaps(arcs_, piece_->h0 > 0 ? kNarrow : kWide, gaps_);
+    free_ = cut_gaps(arcs_, piece_->h0 > 0 ? kNarrow : kWide, gaps_);
     query_.gaps = gaps_.data();
     query_.gap_count = static_cast<int>(gaps_.size());
   }
@@ -195,7 +198,7 @@ class Walk {
   geom::Point3 center_;
   Arcs& arcs_;
   const Piece* piece_ = nullptr;
-  double rounding_mm_ = 0;
+  double rounding_mm_ = 0, free_ = 2 * geom::kPi;
   ReachQuery query_;
   ReachFound found_;
   std::vector<Waiting> waiting_;
