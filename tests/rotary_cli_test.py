@@ -327,10 +327,9 @@ class Leaning(unittest.TestCase):
     def setUpClass(cls):
         cls.outline = slotted()
         cls.files = {"section.dxf": dxf(cls.outline)}
-        make = lambda tai: job(part='section = "section.dxf"\nlength = 4.0', tool="radius = 1.5\nshank_length = 60.0",
-                               operation=f'tolerance = 0.02\nside_step = 2.0\ntai = "{tai}"')
-        cls.exact = Run(make("exact"), files=cls.files, expect=(0, 3))
-        cls.section = Run(make("section"), files=cls.files, expect=(0, 1, 3))
+        text = job(part='section = "section.dxf"\nlength = 4.0', tool="radius = 1.5\nshank_length = 60.0", operation="tolerance = 0.02\nside_step = 2.0")
+        cls.exact = Run(text, files=cls.files, expect=(0, 3))
+        cls.section = Run(text, "--tai", "section", files=cls.files, expect=(0, 1, 3))
 
     def depths(self, run, first):
         boundary, out = dense(self.outline), []
