@@ -278,7 +278,8 @@ TEST(RotaryPlaces, NeighboursAreOnePlaceAndTheWorstIsFirst) {
   for (const std::size_t i : {3u, 4u, 5u})
     points[i].place.state = State::moved, points[i].place.excess_mm = 0.1 * static_cast<double>(i);
   points[9].place.state = State::moved, points[9].place.excess_mm = 3;
-  points[20].place.state = points[21].place.state = State::unreachable, points[21].place.excess_mm = 0.2;
+  points[20].place.state = points[21].place.state = State::unreachable;
+  points[20].place.excess_mm = 0.1, points[21].place.excess_mm = 0.2;
   const std::vector<LeftPlace> places = left_places(sample.plan);
   ASSERT_EQ(places.size(), 3u);
   EXPECT_EQ(places[0].state, State::unreachable);
