@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <random>
 
@@ -15,6 +16,7 @@
 #include "burin/post/emit.h"
 #include "burin/servo/measure.h"
 #include "burin/verify/scallop.h"
+#include "burin/verify/sweep.h"
 
 namespace burin {
 namespace {
@@ -76,7 +78,8 @@ job::CycleJob make(const std::string& text, job::CycleOptions options = {}) {
 std::vector<verify::TipPass> tips_of(const job::CycleRun& run, int surface) {
   std::map<int, verify::TipPass> passes;
   for (const cycle::Motion& m : run.plan.motions) {
-    if (m.kind != cycle::MotionKind::cut || m.surface != surface) continue;
+    // Paths with what they run over the edges of the surface.
+    if (m.pass < 0 || m.surface != surface) continue;
     std::vector<Point3> tips{m.path.start()};
     for (std::size_t i = 0; i + 1 < m.path.nodes.size(); ++i) {
       // Chords of 0.06 mm leave a bend of radius 3 by 1.5e-4 mm.
@@ -134,7 +137,7 @@ TEST(CycleJob, ScallopOnEdgesThatPathsMeetAtASlant) {
     const job::CycleJob job = make(program({block(10, s)}, nc::PathMethod::iso_scallop), options);
     ASSERT_EQ(job.runs.size(), 1u);
     const verify::ScallopReport report =
-        measure_scallop(s, tips_of(job.runs[0], 0), {.radius_mm = 3, .spacing_mm = 0.1});
+        measure_scallop(s, tips_of(job.runs[0], 0), {.radius_mm = 3, .spacing_mm = 0.3});
     EXPECT_LE(report.scallop_max_mm, 0.02 * 1.02) << slant;
     // About the acute corners of the others fronts turn, and what ends at the border is cut by its path too.
     if (slant < 1 && slant > -1) {
@@ -196,6 +199,91 @@ TEST(CycleJob, ScallopOfPathsAcrossAConvexCrease) {
     EXPECT_GE(report.scallop_min_mm, 0.02 * 0.95) << degrees;
     EXPECT_LT(report.gouge_max_mm, 1e-3);
   }
+}
+
+/// The highest place between the paths of the only surface, on lines across them; places that `leave_out`
+/// names are not looked at. Sweeps the ball over the surface, as measure_scallop does.
+double highest(const job::CycleJob& job, cycle::Along along, const std::function<bool(Point3)>& leave_out) {
+  constexpr double kRadius = 3;
+  constexpr int kLines = 12, kSamples = 1500;
+  std::vector<verify::Sweep::Segment> segments;
+  for (const verify::TipPass& pass : tips_of(job.runs[0], 0))
+    for (const std::vector<Point3>& tips : pass.stretches)
+      for (std::size_t i = 0; i + 1 < tips.size(); ++i)
+        segments.push_back({{tips[i].x, tips[i].y, tips[i].z + kRadius},
+                            {tips[i + 1].x, tips[i + 1].y, tips[i + 1].z + kRadius}});
+  const verify::Sweep sweep(std::move(segments), kRadius);
+  const NurbsSurface& s = job.surfaces[0].composite.surfaces[0].surface;
+  const double side = reversed_normal(s) ? -1 : 1;
+  const geom::Interval u = s.domain(geom::Direction::u), v = s.domain(geom::Direction::v);
+  geom::SurfaceEvaluator evaluator(s);
+  double most = 0;
+  for (int i = 0; i <= kLines; ++i) {
+    const auto at = [&](double x) {
+      double a = double(i) / kLines, b = x;
+      if (along == cycle::Along::v) std::swap(a, b);
+      const geom::SurfaceDerivatives d = evaluator.derivatives(u.lo + a * u.length(), v.lo + b * v.length());
+      if (leave_out(d.p)) return 0.0;
+      return sweep.entry(d.p, side * geom::normal(d), -2 * kRadius, 2 * kRadius, 0).value_or(2 * kRadius);
+    };
+    for (int k = 0; k <= kSamples; ++k) most = std::max(most, at(double(k) / kSamples));
+  }
+  return most;
+}
+
+TEST(CycleJob, ScallopAlongAConvexCrease) {
+  for (const double degrees : {3.0, 30.0, 90.0}) {
+    const std::vector<NurbsSurface> two = creased(std::tan(0.5 * degrees * geom::kPi / 180));
+    job::CycleOptions options;
+    options.along = cycle::Along::u;
+    const job::CycleJob job =
+        make(program({block(10, two[0]), block(20, two[1])}, nc::PathMethod::iso_scallop), options);
+    ASSERT_EQ(job.surfaces_out, 1u);
+    EXPECT_EQ(job.lifted, 0u);
+    // The ball on one side and on the other: two paths along the crease at most, and two steps that are
+    // narrower.
+    for (const cycle::PassFigures& f : job.runs[0].plan.figures) {
+      EXPECT_LE(f.scallop_max, 0.02 * 1.02);
+      if (!f.last) {
+        EXPECT_GE(f.scallop_min, 0.02 * 0.98);
+      }
+    }
+    EXPECT_LE(highest(job, cycle::Along::u, [](Point3) { return false; }), 0.02 * 1.02) << degrees;
+  }
+}
+
+TEST(CycleJob, ScallopInAndNextToAValley) {
+  for (const cycle::Along along : {cycle::Along::u, cycle::Along::v})
+    for (const double degrees : {3.0, 30.0, 90.0}) {
+      const double half = 0.5 * degrees * geom::kPi / 180;
+      const std::vector<NurbsSurface> two = creased(-std::tan(half));
+      job::CycleOptions options;
+      options.along = along;
+      const job::CycleJob job =
+          make(program({block(10, two[0]), block(20, two[1])}, nc::PathMethod::iso_scallop), options);
+      ASSERT_EQ(job.surfaces_out, 1u);
+      for (const cycle::PassFigures& f : job.runs[0].plan.figures) {
+        EXPECT_LE(f.scallop_max, 0.02 * 1.02);
+        if (!f.last) {
+          EXPECT_GE(f.scallop_min, 0.02 * 0.98) << degrees;
+        }
+      }
+      // Nearer to the valley no ball of this radius touches a flank; curved flanks move the place a little.
+      const double fillet = 3 * std::sin(half) + 0.05 + 0.1 * std::sin(half) * 9;
+      EXPECT_LE(highest(job, along, [&](Point3 p) { return std::abs(p.y) < fillet; }), 0.02 * 1.02)
+          << degrees;
+      // Nothing runs to and fro: little more than passes at the step of a plane.
+      const double area = 15 * 20 / std::cos(half), step = std::sqrt(8 * 3 * 0.02);
+      EXPECT_LT(job.cut_mm, 1.35 * area / step) << degrees;
+      // A ball rests in the valley, R (1 / cos - 1) above it, where the middle of the crease is (7.5,
+      // 0, 5.1875).
+      double lowest = 1e9;
+      for (const verify::TipPass& pass : tips_of(job.runs[0], 0))
+        for (const auto& tips : pass.stretches)
+          for (const Point3 p : tips)
+            if (std::hypot(p.x - 7.5, p.y) < 0.5) lowest = std::min(lowest, p.z);
+      EXPECT_NEAR(lowest, 5 + 3 * (1 / std::cos(half) - 1), 0.05) << degrees;
+    }
 }
 
 TEST(CycleJob, CutPatchesGiveTheSamePathAsTheWhole) {

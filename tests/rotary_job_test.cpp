@@ -169,7 +169,8 @@ void expect_listed(const Outcome& out, const RotaryCheck& check) {
     }
     unlisted += listed ? 0 : 1;
     if (!listed && unlisted == 1)
-      ADD_FAILURE() << "left standing and not said: " << check.report.deviation_mm[i] << " mm at " << s.p.x
+      ADD_FAILURE() << "left standing and not said: " << check.report.deviation_mm[i] << " mm (scallop " << out.options.scallop
+                    << ", pattern " << static_cast<int>(out.options.pattern) << ") at " << s.p.x
                     << " " << s.p.y << " " << s.p.z;
   }
 }

@@ -19,8 +19,9 @@ struct ReadStlOptions {
 
 /// Corners that are the same to the last bit become one vertex. Which form it is, is decided by the content
 /// (a binary file may begin with "solid"). Errors (syntax) with line or triangle: truncated, a count that the
-/// file does not hold, numbers that are not finite, no triangles. Diagnostics: triangles without area are
-/// left out (info), several solids in one text file are one mesh (info).
+/// file does not hold, numbers that are not finite or beyond 10 km, no triangles; (range) more triangles than
+/// allowed. Diagnostics: triangles with a corner twice are left out (info), several solids in one text file
+/// are one mesh (info), bytes behind the last triangle (left out when a triangle would fit in).
 Result<geom::Mesh> read_stl(std::string_view bytes, const ReadStlOptions& options, Diagnostics& diagnostics);
 
 /// Binary; normals from the corners.

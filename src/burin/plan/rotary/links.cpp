@@ -229,10 +229,7 @@ void Linker::add_run(Run run, std::size_t path) {
     // The way back leads over the cut that was made, the one before is behind a link.
     if (!approach(run, path)) {
       ++plan_.counts.broken;
-      // A point where two runs meet may have been cut by the one before.
-      const bool shared = !plan_.legs.empty() && !plan_.legs.back().points.empty();
-      for (const std::size_t p : run.points)
-        if (!shared || plan_.legs.back().points.back() != p) plan_.points[p].place.state = State::unreachable;
+      left_.insert(left_.end(), run.points.begin(), run.points.end());
       return;
     }
     behind_.clear();
@@ -279,6 +276,12 @@ void Linker::add(PathPlan path, std::size_t number) {
 
 void Linker::finish() {
   if (!plan_.legs.empty()) retract(plan_.legs.back().path);
+  // A point where two runs meet may have been cut by the other one.
+  std::vector<char> cut(plan_.points.size(), 0);
+  for (const Leg& made : plan_.legs)
+    for (const std::size_t p : made.points) cut[p] = 1;
+  for (const std::size_t p : left_)
+    if (!cut[p]) plan_.points[p].place.state = State::unreachable;
 }
 
 }  // namespace burin::rotary

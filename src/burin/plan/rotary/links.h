@@ -15,7 +15,7 @@ class Linker {
 
   /// Appends the path's points and its legs.
   void add(PathPlan path, std::size_t number);
-  /// Retracts at the end.
+  /// Retracts at the end; says which points were not cut.
   void finish();
   /// Where the tool stands after what was added.
   AxisPose at() const { return at_; }
@@ -47,7 +47,8 @@ class Linker {
   double clear_z_;  ///< of the ball's centre in the machine: the tool is above part and stock
   AxisPose at_;
   bool started_ = false, up_ = true;
-  std::vector<AxisPose> behind_;  ///< the cut that ends where the tool stands, for a way back
+  std::vector<std::size_t> left_;  ///< points of runs that no way led to
+  std::vector<AxisPose> behind_;   ///< the cut that ends where the tool stands, for a way back
 };
 
 /// Length of the tip's way in the part frame over a joint-linear move.

@@ -79,11 +79,16 @@ class PathPlanner {
     const double length = line_.length();
     if (nodes_.size() > 1 && nodes_.back().s - nodes_.front().s >= length * (1 - 1e-12)) nodes_.pop_back();
     std::size_t best = 0;
-    double nearest_mm = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
+    // Where the axis has hardly more than a turn, rings begin at its end and are cut to and fro.
+    const RotaryOptions& o = shared_.options;
+    const bool narrow = o.theta_max - o.theta_min < 4 * geom::kPi;
+    const double seam = (o.theta_min + o.theta_max) / 2 - geom::kPi;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const double d = geom::distance(nodes_[i].place.center, start_.center);
-      if (d < nearest_mm) {
-        nearest_mm = d;
+      const double d = narrow ? std::abs(turned_by(nodes_[i].initial - seam))
+                              : geom::distance(nodes_[i].place.center, start_.center);
+      if (d < least) {
+        least = d;
         best = i;
       }
     }
@@ -122,12 +127,12 @@ class PathPlanner {
     o.smooth = shared_.options.smooth && shared_.section == nullptr;
     o.lean = shared_.options.lean;
     o.start = start_.theta;
-    out_.chain = choose_axes(layers, o);
+    const AxisChain chain = dense_.closed ? round_and_round(layers, o) : choose_axes(layers, o);
     std::vector<char> broken(nodes_.size(), 0);
-    for (const std::size_t b : out_.chain.breaks) broken[b] = 1;
+    for (const std::size_t b : chain.breaks) broken[b] = 1;
     broken_ = std::move(broken);
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      double theta = out_.chain.theta[i];
+      double theta = chain.theta[i];
       // A pinned angle stays to the last bit, so that what was proven about it stays proven.
       if (!free_.empty() && !free_[i] && std::abs(turned_by(theta - nodes_[i].theta)) < 1e-6)
         theta = nodes_[i].theta + 2 * geom::kPi * std::round((theta - nodes_[i].theta) / (2 * geom::kPi));
@@ -137,6 +142,23 @@ class PathPlanner {
       }
       nodes_[i].theta = theta;
     }
+  }
+  /// A closed path comes back with the angle it began with (and whole turns): of three times round the middle
+  /// one is taken.
+  static AxisChain round_and_round(std::vector<Layer> layers, const AxisOptions& options) {
+    if (layers.size() < 3) return choose_axes(layers, options);
+    const std::size_t n = layers.size() - 1;
+    // The last one is the first one again, with the length that leads to it.
+    const Layer seam = layers.back();
+    for (int copy = 0; copy < 2; ++copy)
+      for (std::size_t i = 1; i <= n; ++i) layers.push_back(i == n ? seam : Layer(layers[i]));
+    const AxisChain all = choose_axes(layers, options);
+    AxisChain out;
+    const double turns = 2 * geom::kPi * std::round((all.theta[n] - options.start) / (2 * geom::kPi));
+    for (std::size_t i = n; i <= 2 * n; ++i) out.theta.push_back(all.theta[i] - turns);
+    for (const std::size_t b : all.breaks)
+      if (b > n && b <= 2 * n) out.breaks.push_back(b - n);
+    return out;
   }
   static void pin(Layer& layer, double theta) {
     const double t = turned_by(theta);

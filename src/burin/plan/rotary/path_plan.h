@@ -79,7 +79,6 @@ struct PathPlan {
   double gouge_mm = 0;  ///< largest depth of the ball, upper bound
   double excess_mm = 0;
   std::size_t tsi = 0, ssi_split = 0, halving_points = 0;
-  AxisChain chain;
   std::vector<geom::Point3> uncut;  ///< contact points between nodes that are not joined by a cut
 };
 

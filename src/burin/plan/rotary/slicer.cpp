@@ -57,8 +57,7 @@ SliceLoop started(const SliceLoop& loop) {
 
 class RingMaker {
  public:
-  RingMaker(double radius, double density, double w)
-      : radius_(radius), density_(density), step_(std::sqrt(8 * density / radius)), w_(w) {}
+  RingMaker(double radius, double density, double w) : step_(std::sqrt(8 * density / radius)), w_(w) {}
 
   MeshRing make(const SliceLoop& given) {
     const SliceLoop loop = started(given);
@@ -106,7 +105,7 @@ class RingMaker {
     points.push_back(to);
   }
 
-  double radius_, density_, step_, w_;
+  double step_, w_;
 };
 
 }  // namespace

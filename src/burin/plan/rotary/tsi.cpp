@@ -108,7 +108,8 @@ class Resolver {
     return -roller_.room(c.p + radius_ * c.n, nearest) <= allowed_;
   }
   bool touches(const Contact& c, double room, Point3 nearest) const;
-  Place standing(std::size_t i) const;
+  Place standing(const Contact& c, bool touches) const;
+  Place end_place(const Contact& c) const;
   Contact last_good(Contact good_end, Contact bad_end) const;
   void bridge(std::size_t first, std::size_t end);
   void follow(std::size_t first, std::size_t end);
@@ -169,9 +170,10 @@ void Resolver::append(std::vector<Place>& places, std::vector<Contact> left, con
 
 /// Bad contacts [first, end) between two good ones.
 void Resolver::bridge(std::size_t first, std::size_t end) {
-  const Place from = detail::place_at(last_good(at(first - 1 + contacts_.size()), at(first)), radius_);
-  const Place to = detail::place_at(last_good(at(end), at(end - 1)), radius_);
+  const Place from = end_place(last_good(at(first - 1 + contacts_.size()), at(first)));
+  const Place to = end_place(last_good(at(end), at(end - 1)));
   result_.path.places.push_back(from);
+  result_.moved += (from.state == State::moved) + (to.state == State::moved);
   const std::vector<Contact> left = skipped(first, end);
   std::vector<Place> places;
   const auto angle = [](Point3 p) { return std::atan2(p.z, p.y); };
@@ -239,11 +241,18 @@ bool Resolver::touches(const Contact& c, double room, Point3 nearest) const {
   return roller_.on_part(c.p, half);
 }
 
-Place Resolver::standing(std::size_t i) const {
-  Place place = detail::place_at(at(i), radius_);
-  if (touches_[i % touches_.size()]) return place;
+Place Resolver::standing(const Contact& c, bool touches) const {
+  Place place = detail::place_at(c, radius_);
+  if (touches) return place;
   Place touching = place;
   return roller_.touch(place.center, touching) ? touching : place;
+}
+
+/// At either end of a stretch, where the contact lies between two given ones.
+Place Resolver::end_place(const Contact& c) const {
+  Point3 nearest = c.p;
+  const double room = roller_.room(c.p + radius_ * c.n, nearest);
+  return standing(c, touches(c, room, nearest));
 }
 
 TsiResult Resolver::run() {
@@ -268,7 +277,7 @@ TsiResult Resolver::run() {
   for (std::size_t i = start; i < start + n;) {
     if (!result_.path.closed && i >= n) break;
     if (good_[i % n]) {
-      result_.path.places.push_back(standing(i));
+      result_.path.places.push_back(standing(at(i), touches_[i % n] != 0));
       result_.moved += result_.path.places.back().state == State::moved;
       ++i;
       continue;
