@@ -112,6 +112,7 @@ void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, cons
                   {"machine", machine.machine().name},
                   {"dialect", session.common.dialect}};
   r.counts = {{"contact_points", c.contact_points},
+              {"planned_contacts", c.planned_contacts},
               {"ssi_split", c.ssi_split},
               {"tsi", c.tsi},
               {"tai", c.tai},
@@ -235,6 +236,7 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
   if (args.tolerance) file->options.tolerance_mm = *args.tolerance;
   if (args.tsi) file->options.tsi = *args.tsi;
   if (args.tai) file->options.tai = *args.tai;
+  file->options.threads = static_cast<unsigned>(session.common.threads);
   const fs::path folder = fs::path(args.job).parent_path();
   auto machine = machine_of(*file, folder);
   if (!machine) return machine.error();

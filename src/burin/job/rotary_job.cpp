@@ -231,7 +231,8 @@ Result<RotaryJobFile> read_rotary_job(std::string_view text, const std::string& 
 Result<rotary::Part> load_rotary_part(const RotaryJobFile& job, const std::string& folder,
                                       const FileSource& read, Diagnostics& diagnostics) {
   rotary::PartOptions options;
-  options.deflection_mm = kMeshShare * job.options.tolerance_mm;
+  const bool is_swept = std::holds_alternative<SectionPart>(job.part);
+  options.deflection_mm = (is_swept ? kMeshShare : kFacetShare) * job.options.tolerance_mm;
   const auto path_of = [&](const std::string& file) { return (fs::path(folder) / file).string(); };
   const auto section = [&](const std::string& path) -> Result<geom::ArcSpline> {
     auto bytes = read(path);

@@ -47,8 +47,9 @@ struct RotaryJobFile {
   double spindle_rpm = 0;  ///< 0: no spindle words
 };
 
-/// Share of the tolerance by which the part's mesh may leave the design.
-inline constexpr double kMeshShare = 0.2;
+/// Share of the tolerance by which the part's mesh may leave the design: of swept parts, whose section is
+/// asked itself where the mesh does not decide; and of lofts and CAD faces, where it is lost to the steps.
+inline constexpr double kMeshShare = 0.2, kFacetShare = 0.1;
 
 /// Every key checked; errors with file, line, column and what would be accepted.
 Result<RotaryJobFile> read_rotary_job(std::string_view toml, const std::string& file_name);

@@ -162,8 +162,7 @@ bool Linker::link(const AxisPose& to, std::size_t path) {
   const double radius = shared_.tool.radius;
   if (up_ || geom::distance(at_.center, to.center) > kLinkRadii * radius) return false;
   if (std::abs(to.theta - at_.theta) > kLinkTurn) return false;
-  MotionOptions o;
-  o.tolerance_mm = o.ball_mm = shared_.options.tolerance_mm;
+  const MotionOptions o = shared_.cutting();
   for (const double lift : kLinkLifts) {
     std::vector<AxisPose> poses{at_};
     if (lift > 0) {

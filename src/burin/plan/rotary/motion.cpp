@@ -15,6 +15,7 @@ using geom::Vec3;
 
 // 2^-40 of a move is below rounding: no interval is halved further.
 constexpr int kMaxDepth = 40;
+constexpr double kFar = 1e300;
 
 /// Part frame to machine frame at A = theta, and back.
 Point3 turned(Point3 p, double theta) {
@@ -50,18 +51,21 @@ struct Way {
 struct Stop {
   double t = 0;
   Point3 center;
-  double distance = 0;  ///< to the part, or a lower bound when it is far
+  double low = 0, high = 0;  ///< bounds of the distance to the part; `low` alone when it is far
+  double x = 0;              ///< of the nearest place
+  bool known = false;        ///< nothing more can be found out
 };
 
 class BallCheck {
  public:
-  BallCheck(const Way& way, const geom::MeshIndex& part, double radius, double allowed)
-      : way_(way), part_(part), radius_(radius), allowed_(allowed) {}
+  BallCheck(const Way& way, const geom::MeshIndex& part, double radius, const MotionOptions& options)
+      : way_(way), part_(part), radius_(radius), allowed_(options.ball_mm), options_(options) {}
 
   /// True when the ball is proven to sink in by at most `allowed` everywhere.
   bool run() {
     const double reach = radius_ + norm(way_.center(1) - way_.center(0)) + way_.bend(1) - allowed_;
-    return clear(stop(0, reach), stop(1, reach), 0);
+    Stop first = stop(0, reach), last = stop(1, reach);
+    return clear(first, last, 0);
   }
   double at() const { return at_; }
   double depth() const { return depth_; }
@@ -69,15 +73,24 @@ class BallCheck {
  private:
   Stop stop(double t, double within) const {
     const Point3 c = way_.center(t);
-    const auto hit = part_.nearest(c, within);
-    return {t, c, hit ? hit->distance : within};
+    const double off = options_.deflection_mm;
+    const auto hit = part_.nearest(c, within + off);
+    if (!hit) return {t, c, within, kFar, 0, true};
+    return {t, c, std::max(0.0, hit->distance - off), hit->distance + off, hit->p.x, !(off > 0)};
+  }
+
+  /// Asks the part itself.
+  void find_out(Stop& s) const {
+    if (!s.known && options_.design != nullptr)
+      s.low = std::max(s.low, options_.design->least(s.center, s.high, s.x));
+    s.known = true;
   }
 
   /// Over the stretch between a and b. A point q keeps |q - C|^2 >= (1-s) da^2 + s db^2 - s (1-s) h^2 from
   /// the chord; the bend comes on top.
-  double depth_bound(const Stop& a, const Stop& b, double bend) const {
+  double depth_bound(const Stop& a, const Stop& b, double da, double db, double bend) const {
     const double h2 = dot(b.center - a.center, b.center - a.center);
-    const double da2 = a.distance * a.distance, db2 = b.distance * b.distance;
+    const double da2 = da * da, db2 = db * db;
     double least = std::min(da2, db2);
     if (h2 > 0) {
       const double s = std::clamp(0.5 - (db2 - da2) / (2 * h2), 0.0, 1.0);
@@ -86,12 +99,24 @@ class BallCheck {
     return radius_ - std::sqrt(std::max(0.0, least)) + bend;
   }
 
-  bool clear(const Stop& a, const Stop& b, int level) {
-    if (radius_ - a.distance > allowed_) return fail(a);
-    if (radius_ - b.distance > allowed_) return fail(b);
+  bool clear(Stop& a, Stop& b, int level) {
+    for (Stop* s : {&a, &b}) {
+      if (radius_ - s->low <= allowed_) continue;
+      if (radius_ - s->high > allowed_) return fail(*s);
+      find_out(*s);
+      if (radius_ - s->low > allowed_) return fail(*s);
+    }
     const double dt = b.t - a.t;
     const double bend = way_.bend(dt);
-    const double depth = depth_bound(a, b, bend);
+    double depth = depth_bound(a, b, a.low, b.low, bend);
+    // Where no better knowledge of the ends would do, the stretch is too long.
+    const bool ask = depth > allowed_ && !(a.known && b.known) &&
+                     depth_bound(a, b, a.known ? a.low : a.high, b.known ? b.low : b.high, bend) <= allowed_;
+    if (ask) {
+      find_out(a);
+      find_out(b);
+      depth = depth_bound(a, b, a.low, b.low, bend);
+    }
     if (depth <= allowed_) {
       depth_ = std::max(depth_, depth);
       return true;
@@ -99,19 +124,20 @@ class BallCheck {
     if (level >= kMaxDepth) return fail(a);
     // Beyond this distance the middle is known to be far enough.
     const double within = radius_ - allowed_ + norm(b.center - a.center) + bend;
-    const Stop middle = stop((a.t + b.t) / 2, within);
+    Stop middle = stop((a.t + b.t) / 2, within);
     return clear(a, middle, level + 1) && clear(middle, b, level + 1);
   }
 
   bool fail(const Stop& s) {
     at_ = s.t;
-    depth_ = std::max(depth_, radius_ - s.distance);
+    depth_ = std::max(depth_, radius_ - s.low);
     return false;
   }
 
   const Way& way_;
   const geom::MeshIndex& part_;
   double radius_, allowed_, at_ = 0, depth_ = -1e300;
+  const MotionOptions& options_;
 };
 
 /// One cylinder of the tool: the shank or a piece of the holder.
@@ -218,7 +244,7 @@ MoveCheck check_move(const AxisPose& from, const AxisPose& to, const BodyIndex& 
                      const geom::MeshIndex& part, const model::BallTool& tool, const MotionOptions& options) {
   const Way way(from, to);
   MoveCheck out;
-  BallCheck ball(way, part, tool.radius, options.ball_mm);
+  BallCheck ball(way, part, tool.radius, options);
   if (!ball.run()) {
     out.at = ball.at();
     out.ball_depth = ball.depth();
@@ -226,7 +252,7 @@ MoveCheck check_move(const AxisPose& from, const AxisPose& to, const BodyIndex& 
   }
   out.ball_depth = ball.depth();
   for (const Piece& piece : pieces_of(tool)) {
-    PieceCheck check(way, body, piece, options.tolerance_mm);
+    PieceCheck check(way, body, piece, options.tolerance_mm - options.deflection_mm);
     if (check.run()) continue;
     out.at = check.at();
     return out;

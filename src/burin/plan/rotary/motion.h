@@ -7,6 +7,7 @@
 #include "burin/geom/mesh/mesh_index.h"
 #include "burin/model/tool.h"
 #include "burin/plan/rotary/body_index.h"
+#include "burin/plan/rotary/swept_distance.h"
 
 namespace burin::rotary {
 
@@ -23,6 +24,10 @@ struct MotionOptions {
   /// What is allowed for the ball, when other than tolerance_mm (links and rapids: less than 0 keeps a
   /// distance).
   double ball_mm = 0.01;
+  /// How far the mesh may leave the part: both allowances are kept against the part.
+  double deflection_mm = 0;
+  /// The part itself, asked where the mesh does not decide about the ball; may be null.
+  const SweptDistance* design = nullptr;
 };
 struct MoveCheck {
   bool clear = false;

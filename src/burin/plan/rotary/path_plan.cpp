@@ -198,9 +198,8 @@ class PathPlanner {
     const double tolerance = shared_.options.tolerance_mm;
     out.ssi = undercut(a, b);
     if (out.ssi > tolerance) return out;
-    MotionOptions o;
-    o.tolerance_mm = o.ball_mm = tolerance;
-    const MoveCheck check = check_move(a.pose(), b.pose(), shared_.body, shared_.mesh, shared_.tool, o);
+    const MoveCheck check =
+        check_move(a.pose(), b.pose(), shared_.body, shared_.mesh, shared_.tool, shared_.cutting());
     out.clear = check.clear;
     out.depth = check.ball_depth;
     return out;
@@ -298,6 +297,13 @@ class PathPlanner {
 
 }  // namespace
 
+double step_tolerance(const Shared& shared) {
+  constexpr double kReserve = 0.02;
+  const double tolerance = shared.options.tolerance_mm;
+  const double unknown = shared.design != nullptr ? 0 : std::min(shared.part.deflection_mm, 0.5 * tolerance);
+  return (1 - kReserve) * tolerance - unknown;
+}
+
 void find_reach(const Shared& shared, Node& node) {
   const Point3 c = node.place.center;
   node.initial = std::atan2(c.y, c.z);
@@ -327,25 +333,45 @@ void find_reach(const Shared& shared, Node& node) {
   node.reachable[0].hi = node.reachable[0].lo + 2 * kHalf;
 }
 
-PathBase prepare_path(const Shared& shared, const ContactPath& path) {
+PathBase place_path(const Shared& shared, const ContactPath& path) {
   const RotaryOptions& o = shared.options;
   const double radius = shared.tool.radius;
   PathBase out;
-  TsiResult tsi = resolve_tsi(path, shared.mesh, {o.tsi, radius, o.tolerance_mm});
+  TsiResult tsi = resolve_tsi(path, shared.mesh, {o.tsi, radius, o.tolerance_mm, shared.part.deflection_mm});
   out.tsi = tsi.interfering;
   out.excess_mm = tsi.excess_max_mm;
   out.dense = std::move(tsi.path);
-  out.ssi = thin(out.dense, radius, o.tolerance_mm);
-  const CenterLine line(out.dense, radius, line_accuracy(shared));
-  out.nodes.resize(out.ssi.at.size());
-  for_each_index(out.nodes.size(), [&](std::size_t i) {
-    Node node;
-    node.s = line.length_of(out.ssi.at[i]);
-    node.place = out.ssi.points[i];
-    find_reach(shared, node);
-    out.nodes[i] = std::move(node);
-  });
+  out.ssi = thin(out.dense, radius, step_tolerance(shared));
   return out;
+}
+
+PathBase swept_along(const PathBase& base, double turn, double dx, double dw) {
+  const double c = std::cos(turn), s = std::sin(turn);
+  const auto turned = [&](auto v) { return decltype(v){v.x, v.y * c - v.z * s, v.y * s + v.z * c}; };
+  const auto move = [&](Place& p) {
+    p.center = turned(p.center);
+    p.center.x += dx;
+    p.contact.p = turned(p.contact.p);
+    p.contact.p.x += dx;
+    p.contact.n = turned(p.contact.n);
+    p.contact.w += dw;
+  };
+  PathBase out = base;
+  for (Place& p : out.dense.places) move(p);
+  for (Place& p : out.ssi.points) move(p);
+  return out;
+}
+
+void add_nodes(const Shared& shared, PathBase& base) {
+  const CenterLine line(base.dense, shared.tool.radius, line_accuracy(shared));
+  base.nodes.resize(base.ssi.at.size());
+  for_each_index(base.nodes.size(), [&](std::size_t i) {
+    Node node;
+    node.s = line.length_of(base.ssi.at[i]);
+    node.place = base.ssi.points[i];
+    find_reach(shared, node);
+    base.nodes[i] = std::move(node);
+  });
 }
 
 PathPlan plan_path(const Shared& shared, const ContactPath& path, PathBase base, const AxisPose& start) {

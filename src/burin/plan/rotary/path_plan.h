@@ -25,8 +25,18 @@ struct Shared {
   const BodyIndex& body;
   const ReachIndex& reach;
   const ReachIndex& lift;
-  const SectionAxis* section = nullptr;  ///< with Tai::section
+  const SweptDistance* design = nullptr;  ///< of a swept part
+  const SectionAxis* section = nullptr;   ///< with Tai::section
+
+  /// Of moves that cut: everything within the tolerance of the part itself.
+  MotionOptions cutting() const {
+    return {options.tolerance_mm, options.tolerance_mm, part.deflection_mm, design};
+  }
 };
+
+/// Tolerance of SSI: what is left of the whole one by what the check of the motion cannot know (a swept part
+/// is asked itself; of others only the mesh is known), less a reserve for the bend of joint-linear motion.
+double step_tolerance(const Shared& shared);
 
 /// Dense places by the length of the centre path; straight between them.
 class CenterLine {
@@ -90,7 +100,12 @@ struct PathBase {
   double excess_mm = 0;
   std::vector<Node> nodes;  ///< CL points with their reachable angles
 };
-PathBase prepare_path(const Shared& shared, const ContactPath& path);
+/// Places of the ball (TSI, SSI), which depend on the part around the path only; `nodes` stays empty.
+PathBase place_path(const Shared& shared, const ContactPath& path);
+/// The same places turned about X, moved along X by dx and in w by dw (Suh & Lee, 3.3 A).
+PathBase swept_along(const PathBase& base, double turn, double dx, double dw);
+/// The CL points and their reachable angles, which depend on the whole part.
+void add_nodes(const Shared& shared, PathBase& base);
 
 /// `start`: where the axis and the ball stood before.
 PathPlan plan_path(const Shared& shared, const ContactPath& path, PathBase base, const AxisPose& start);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <memory>
 
+#include "burin/base/parallel.h"
 #include "burin/base/text.h"
 #include "burin/geom/vec.h"
 #include "burin/plan/rotary/links.h"
@@ -64,6 +67,41 @@ bool fits(const geom::Mesh& mesh, BallTool tool, double length, const std::vecto
                      [&](const geom::Point3& c) { return !reach.reachable(c).empty(); });
 }
 
+// Distances from a swept part are short by at most this share of the tolerance.
+constexpr double kDesignShare = 0.005;
+
+/// The first ring of a uniform sweep that no end of the part is near: the others are the same, turned and
+/// moved.
+class SweptRing {
+ public:
+  SweptRing(const Shared& shared, const std::vector<ContactPath>& paths) : shared_(shared) {
+    if (shared.options.pattern != Pattern::rings || !shared.part.swept || !shared.part.swept->uniform())
+      return;
+    const auto own = std::find_if(paths.begin(), paths.end(), [&](const auto& p) { return inner(p); });
+    if (own == paths.end()) return;
+    x_ = own->points.front().p.x;
+    base_ = place_path(shared, *own);
+  }
+  bool holds_for(const ContactPath& path) const { return base_ && inner(path); }
+  PathBase at(const ContactPath& path) const {
+    const double x = path.points.front().p.x;
+    const SweptSection& swept = *shared_.part.swept;
+    return swept_along(*base_, swept.turn_at(x) - swept.turn_at(x_), x - x_,
+                       (x - x_) / (shared_.part.x_max - shared_.part.x_min));
+  }
+
+ private:
+  /// A ball that touches the ring has its centre within R of it, and sees R farther.
+  bool inner(const ContactPath& path) const {
+    if (path.points.empty()) return false;
+    const double x = path.points.front().p.x, sees = 2 * shared_.tool.radius;
+    return x - sees >= shared_.part.x_min && x + sees <= shared_.part.x_max;
+  }
+  const Shared& shared_;
+  std::optional<PathBase> base_;
+  double x_ = 0;
+};
+
 class Planner {
  public:
   Planner(const Part& part, const BallTool& tool, const RotaryOptions& options, Diagnostics& diagnostics)
@@ -87,7 +125,10 @@ class Planner {
     std::unique_ptr<SectionAxis> section;
     if (options_.tai == Tai::section)
       section = std::make_unique<SectionAxis>(part_.mesh, part_.corner_normals, tool_.radius);
-    const Shared shared{part_, tool_, options_, mesh, body, reach, lift, section.get()};
+    std::unique_ptr<SweptDistance> design;
+    if (part_.swept)
+      design = std::make_unique<SweptDistance>(*part_.swept, kDesignShare * options_.tolerance_mm);
+    const Shared shared{part_, tool_, options_, mesh, body, reach, lift, design.get(), section.get()};
     follow(shared, paths->paths);
     plan_.quality.scallop_mm = paths->scallop_max;
     plan_.quality.side_step_min_mm = paths->side_step_min;
@@ -102,16 +143,23 @@ class Planner {
     Linker linker(shared, plan_);
     // Some at once: what does not depend on where the tool comes from, without holding all of it.
     constexpr std::size_t kBatch = 16;
+    // Rings away from the ends of a uniform sweep see the same part: they are placed once.
+    const SweptRing first(shared, paths);
     std::vector<PathBase> bases;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (i % kBatch == 0) {
         bases.assign(std::min(kBatch, paths.size() - i), {});
-        for_each_index(bases.size(), [&](std::size_t k) { bases[k] = prepare_path(shared, paths[i + k]); });
+        for_each_index(bases.size(), [&](std::size_t k) {
+          const ContactPath& own = paths[i + k];
+          bases[k] = first.holds_for(own) ? first.at(own) : place_path(shared, own);
+          add_nodes(shared, bases[k]);
+        });
       }
       PathPlan path = plan_path(shared, paths[i], std::move(bases[i % kBatch]), linker.at());
       RotaryCounts& c = plan_.counts;
       RotaryQuality& q = plan_.quality;
       c.tsi += path.tsi;
+      c.planned_contacts += paths[i].points.size();
       c.ssi_split += path.ssi_split;
       c.halving_points += path.halving_points;
       q.ssi_max_mm = std::max(q.ssi_max_mm, path.ssi_mm);
@@ -225,7 +273,10 @@ class Planner {
 Result<RotaryPlan> plan(const Part& part, const BallTool& tool, const RotaryOptions& options,
                         Diagnostics& diagnostics) {
   if (auto ok = check(part, tool, options); !ok) return ok.error();
-  return Planner(part, tool, options, diagnostics).run();
+  Planner planner(part, tool, options, diagnostics);
+  if (options.threads == 0) return planner.run();
+  tbb::task_arena arena(static_cast<int>(std::min(options.threads, kMostThreads)));
+  return arena.execute([&] { return planner.run(); });
 }
 
 }  // namespace burin::rotary

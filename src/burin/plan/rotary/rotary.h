@@ -37,6 +37,7 @@ struct RotaryOptions {
   double theta_min = -1e9, theta_max = 1e9;  ///< of the machine's A axis
   double safety_mm = 2;                      ///< links and rapids keep this from part and stock
   double stock_radius = 0;  ///< rapids round the part outside of this about the axis; 0: the part's own
+  unsigned threads = 0;     ///< to plan with, 0: all of the machine; the plan does not depend on it
 };
 
 /// One row of points.csv, in cutting order.
@@ -62,8 +63,10 @@ struct Leg {
 };
 
 struct RotaryCounts {
-  std::size_t contact_points = 0, ssi_split = 0, tsi = 0, tai = 0, moved = 0, unreachable = 0, cl_points = 0,
-              axis_reversals = 0, halving_points = 0, broken = 0;
+  /// contact_points are the rows of points.csv; planned_contacts those given to TSI (dense), of which `tsi`
+  /// would gouge.
+  std::size_t contact_points = 0, planned_contacts = 0, ssi_split = 0, tsi = 0, tai = 0, moved = 0,
+              unreachable = 0, cl_points = 0, axis_reversals = 0, halving_points = 0, broken = 0;
 };
 struct RotaryQuality {
   double ssi_max_mm = 0, gouge_max_mm = 0, excess_max_mm = 0, axis_step_max = 0, axis_turn_total = 0;
