@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "burin/plan/cycle/cycle_cases.h"
 
 namespace burin::cycle {
@@ -325,6 +327,54 @@ TEST(Plan, IsDeterministic) {
   ASSERT_EQ(a.motions.size(), b.motions.size());
   for (std::size_t i = 0; i < a.motions.size(); ++i)
     EXPECT_EQ(a.motions[i].path.nodes, b.motions[i].path.nodes);
+}
+
+// Balls sharper than the hills: long lifted stretches, so that the work is split.
+TEST(Plan, DoesNotDependOnTheNumberOfThreads) {
+  const auto c = composite({hills(20, 20, 6, 7), plane({0, 0, -2}, {30, 0, 0}, {0, 30, 0})});
+  for (const Method method : {Method::iso_parametric, Method::iso_scallop}) {
+    PlanOptions o = options(method, 8, 0.05, Along::automatic);
+    const SurfacePlan one = planned(c, o);
+    EXPECT_GT(one.lifted, 0u);
+    for (const unsigned threads : {2U, 5U}) {
+      o.threads = threads;
+      const SurfacePlan more = planned(c, o);
+      EXPECT_EQ(one.gouge_max_mm, more.gouge_max_mm);
+      ASSERT_EQ(one.motions.size(), more.motions.size());
+      for (std::size_t i = 0; i < one.motions.size(); ++i)
+        EXPECT_EQ(one.motions[i].path.nodes, more.motions[i].path.nodes);
+    }
+  }
+}
+
+// A fan: rays that crowd at the inner edge are a poor way to run along, and are not even planned; the way
+// that is taken is the shorter of the two all the same.
+TEST(Plan, AutomaticDirectionIsTheShorterOne) {
+  for (const geom::Composite& c : {composite({cylinder({0, 0, 0}, 10, 0.3, 2.8, 40)}),
+                                   composite({hills(40, 15, 2, 7)}), composite({hills(15, 40, 2, 7)})}) {
+    const auto total = [&](Along along) {
+      const SurfacePlan p = planned(c, options(Method::iso_parametric, 6, 0.02, along));
+      double plunges = 0;
+      for (const Motion& m : p.motions)
+        if (m.kind == MotionKind::plunge) plunges += geom::length(m.path);
+      return p.cut_mm + p.link_mm - plunges;
+    };
+    EXPECT_NEAR(total(Along::automatic), std::min(total(Along::u), total(Along::v)), 1e-9);
+  }
+}
+
+// Half a million paths are not planned before they are refused.
+TEST(Plan, TooMuchIsRefusedAtOnce) {
+  const auto c = composite({hills(100, 100, 5, 7)});
+  Diagnostics d;
+  for (const Method method : {Method::iso_parametric, Method::iso_scallop}) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto r = plan(c, {}, {0, 0, 50}, options(method, 6, 1e-9, Along::automatic), d);
+    ASSERT_FALSE(r.ok());
+    EXPECT_EQ(r.error().code, ErrorCode::range);
+    EXPECT_NE(r.error().message.find("paths"), std::string::npos) << r.error().message;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  }
 }
 
 TEST(Plan, RefusesWhatCannotBe) {
