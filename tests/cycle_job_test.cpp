@@ -406,6 +406,23 @@ TEST(CycleJob, RepeatsTakeTheirOwnWayThere) {
   }
 }
 
+TEST(CycleJob, APartBeyondTheControlIsRefusedBeforeItIsPlanned) {
+  std::mt19937 random(5);
+  NurbsSurface far = bumpy(random);
+  for (geom::HPoint& h : far.points) h.x += 1e6 * h.w;
+  const std::string text = program({block(1, std::move(far))}, nc::PathMethod::iso_parametric);
+  job::CycleOptions options;
+  options.coordinate_limit_mm = 99999;
+  Diagnostics diagnostics;
+  const auto job = job::make_cycle_job(text, options, diagnostics, nullptr);
+  ASSERT_FALSE(job.ok());
+  EXPECT_EQ(job.error().code, ErrorCode::range);
+  EXPECT_NE(job.error().message.find("99999"), std::string::npos) << job.error().message;
+  // Without a limit it is planned.
+  options.coordinate_limit_mm = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(job::make_cycle_job(text, options, diagnostics, nullptr).ok());
+}
+
 TEST(CycleJob, SameBytesEveryTime) {
   std::mt19937 random(2);
   const std::string mm = program({block(10, bumpy(random))}, nc::PathMethod::iso_parametric);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "burin/base/parallel.h"
 #include "burin/base/text.h"
 #include "burin/cl/apt.h"
 #include "burin/job/cycle_job.h"
@@ -117,21 +118,41 @@ void time_ticks(Servo& servo) {
   servo.max_us = us.back();
 }
 
-Result<Servo> interpolate(const job::CycleJob& job, const servo::Limits& limits, Session& session) {
+Error too_many_setpoints(double setpoints, bool at_least, const servo::Limits& limits) {
+  // The period that would do for the same feed; a higher feed shortens what is cut by as much.
+  const double times = setpoints / static_cast<double>(kMaxSetpoints);
+  return {ErrorCode::range,
+          (std::string(at_least ? "at least " : "")) + format_fixed(setpoints, 0) + " setpoints (at most " +
+              std::to_string(kMaxSetpoints) + ": a --period of " +
+              format_fixed(1.01 * times * limits.period_s, 5) + " s or more, or " +
+              format_fixed(1.01 * times, 2) + " times the feed or more, or fewer paths)",
+          {}};
+}
+
+/// Setpoints at the commanded feed without any slowing down.
+double fewest_setpoints(const job::CycleJob& job, const servo::Limits& limits) {
+  double minutes = 0;
+  for (const servo::Stretch& s : job.stretches)
+    minutes += geom::length(s.path) / (s.feed_mm_min > 0 ? s.feed_mm_min : limits.rapid_mm_min);
+  return 60 * minutes / limits.period_s;
+}
+
+/// `timed`: also how long single periods take.
+Result<Servo> interpolate(const job::CycleJob& job, const servo::Limits& limits, bool timed,
+                          Session& session) {
   Servo servo;
+  if (const double least = fewest_setpoints(job, limits); least > static_cast<double>(kMaxSetpoints))
+    return too_many_setpoints(least, true, limits);
   const auto start = std::chrono::steady_clock::now();
   auto plan = servo::plan(job.stretches, limits, session.diagnostics);
   if (!plan) return plan.error();
   servo.planning_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   servo.plan = std::move(*plan);
   if (servo.plan.setpoints > kMaxSetpoints)
-    return Error{ErrorCode::range,
-                 std::to_string(servo.plan.setpoints) + " setpoints (at most " +
-                     std::to_string(kMaxSetpoints) + ": a longer --period, a higher feed, or fewer paths)",
-                 {}};
+    return too_many_setpoints(static_cast<double>(servo.plan.setpoints), false, limits);
   servo.setpoints = servo::run(servo.plan);
   servo.quality = servo::measure(servo.plan, servo.setpoints);
-  time_ticks(servo);
+  if (timed) time_ticks(servo);
   return servo;
 }
 
@@ -366,6 +387,8 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   job::CycleOptions options = args.plan;
   options.file_name = args.program;
   options.tolerance_mm = session.common.tolerance_mm;
+  options.threads = thread_count(static_cast<unsigned>(session.common.threads));
+  options.coordinate_limit_mm = dialect->coordinate_limit_mm;
   auto job = job::make_cycle_job(*text, options, session.diagnostics, session.progress());
   session.end_progress();
   session.diagnostics.locate(args.program);
@@ -377,7 +400,9 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   if (job->stretches.empty())
     session.diagnostics.left_out("no_motion", "the program moves nothing", {.file = args.program});
   if (job->cl.name.empty()) job->cl.name = fs::path(args.program).stem().string();
-  auto servo = interpolate(*job, args.limits, session);
+  // What only the report shows is only found out for it.
+  const bool reported = !session.common.json.empty() || !session.common.html.empty();
+  auto servo = interpolate(*job, args.limits, reported, session);
   if (!servo) {
     // Without setpoints asked for, NC and surfaces are worth having all the same.
     if (!args.setpoints.empty() || servo.error().code == ErrorCode::usage) return in_file(servo.error());
@@ -387,9 +412,11 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   }
   auto nc = post::emit(job->cl, *dialect, {.write_z = true}, session.diagnostics);
   if (!nc) return in_file(nc.error());
-  auto size = program_size(*job, text->size(), *dialect, options.tolerance_mm);
-  if (!size) return in_file(size.error());
-  session.report.extra["program_size"] = *size;
+  if (reported) {
+    auto size = program_size(*job, text->size(), *dialect, options.tolerance_mm);
+    if (!size) return in_file(size.error());
+    session.report.extra["program_size"] = *size;
+  }
   if (auto ok = compare(*job, options, session); !ok) return in_file(ok.error());
   fill_report(options, args.limits, *job, *servo, *nc, session);
   return put_outputs(args, *job, *servo, *nc, nc_path, *text, session);

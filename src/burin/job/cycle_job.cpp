@@ -59,6 +59,7 @@ cycle::PlanOptions plan_options(const nc::MachineGroup& group, const CycleOption
   plan.safety_z = group.safety_z - group.displacement.z;
   plan.tolerance_mm = options.tolerance_mm;
   plan.path_mm = kPath_mm;
+  plan.threads = options.threads;
   return plan;
 }
 
@@ -163,6 +164,7 @@ class Builder {
   Result<void> add(const nc::MachineGroup& group) {
     auto surfaces = surfaces_of(group);
     if (!surfaces) return surfaces.error();
+    if (auto ok = check_range(group, *surfaces); !ok) return ok.error();
     CycleRun run;
     run.surfaces = *surfaces;
     run.group = group;
@@ -175,6 +177,29 @@ class Builder {
     job_.lifted += run.plan.lifted;
     lay_out(run);
     job_.runs.push_back(std::move(run));
+    return {};
+  }
+
+  /// Planning takes long: a part that lies beyond what the control takes is refused before. A surface lies in
+  /// the hull of its control points, the tip at most a tool's diameter and the stock from it.
+  Result<void> check_range(const nc::MachineGroup& group, std::size_t surfaces) const {
+    const double limit = options_.coordinate_limit_mm + group.tool_diameter + std::abs(group.stock);
+    for (const geom::JoinedSurface& joined : job_.surfaces[surfaces].composite.surfaces) {
+      geom::Box3 box;
+      for (const geom::HPoint& h : joined.surface.points) box.add(geom::project(h) + group.displacement);
+      const auto out = [&](char axis, double lo, double hi) -> std::optional<Error> {
+        if (lo <= limit && hi >= -limit) return std::nullopt;
+        return at_line({ErrorCode::range,
+                        std::string("a surface lies at ") + axis + format_shortest(lo > limit ? lo : hi) +
+                            " and beyond (within " + format_shortest(options_.coordinate_limit_mm) +
+                            " mm for this control)",
+                        {}},
+                       group.line);
+      };
+      if (auto error = out('X', box.lo.x, box.hi.x)) return *error;
+      if (auto error = out('Y', box.lo.y, box.hi.y)) return *error;
+      if (auto error = out('Z', box.lo.z, box.hi.z)) return *error;
+    }
     return {};
   }
 

@@ -4,6 +4,7 @@
 // printed here.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -26,6 +27,9 @@ struct CycleOptions {
   double join_mm = 1e-4;
   std::optional<double> join_deviation_mm;
   cycle::Along along = cycle::Along::automatic;
+  unsigned threads = 1;  ///< the job does not depend on it
+  /// Largest coordinate that the control takes, mm: what clearly exceeds it is refused before it is planned.
+  double coordinate_limit_mm = std::numeric_limits<double>::infinity();
 };
 
 /// The surfaces that some blocks became, whatever number of times they are machined.
