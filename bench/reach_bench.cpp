@@ -30,9 +30,7 @@ void burin_reach(benchmark::State& state) {
   state.counters["million_per_s"] =
       benchmark::Counter(n * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(burin_reach)
-    ->ArgsProduct({{10'000, 100'000, 1'000'000}, {0, 1}})
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(burin_reach)->ArgsProduct({{10'000, 100'000, 1'000'000}, {0, 1}})->Unit(benchmark::kMillisecond);
 
 void reach_build(benchmark::State& state) {
   const auto& c = bench::the_case(static_cast<int>(state.range(0)));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reachable angles are measured on: a cutter with six hooked flutes, 50 mm long, turned by 180 degrees, as
-// a mesh of about `triangles`, and places of the ball that touch it without gouging, ring by ring.
+// What reachable angles are measured on: a cutter with six hooked flutes, 50 mm long, turned by 180 degrees,
+// as a mesh of about `triangles`, and places of the ball that touch it without gouging, ring by ring.
 #pragma once
 
 #include <map>

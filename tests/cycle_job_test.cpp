@@ -78,7 +78,8 @@ job::CycleJob make(const std::string& text, job::CycleOptions options = {}) {
 std::vector<verify::TipPass> tips_of(const job::CycleRun& run, int surface) {
   std::map<int, verify::TipPass> passes;
   for (const cycle::Motion& m : run.plan.motions) {
-    if (m.kind != cycle::MotionKind::cut || m.surface != surface) continue;
+    // Paths with what they run over the edges of the surface.
+    if (m.pass < 0 || m.surface != surface) continue;
     std::vector<Point3> tips{m.path.start()};
     for (std::size_t i = 0; i + 1 < m.path.nodes.size(); ++i) {
       // Chords of 0.06 mm leave a bend of radius 3 by 1.5e-4 mm.

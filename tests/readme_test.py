@@ -23,9 +23,9 @@ assert len(commands) >= 5, commands
 for command in commands:
     words = shlex.split(command)
     assert words[0] == PROGRAM, command
-    run = subprocess.run([burin, *words[1:]], cwd=work, env=env, capture_output=True, text=True, timeout=60)
+    run = subprocess.run([burin, *words[1:]], cwd=work, env=env, capture_output=True, text=True, timeout=600)
     print(f"exit {run.returncode}: {command}")
-    assert run.returncode == 0, run.stderr
+    assert run.returncode == (3 if "keyway" in command else 0), run.stderr  # places that no axis reaches are said
 
 # The listing of k.ngc.
 listing = readme.split("`k.ngc` starts with\n\n")[1].split("\n\n")[0]
@@ -56,4 +56,9 @@ assert figures == [size["surface_program_bytes"], counts["paths"], counts["setpo
 said = re.search(r"with `G106\.1`: (\d+) bytes\s+instead of (\d+) for six copies", readme)
 sizes = [os.path.getsize(os.path.join(source, "examples", "keys", name)) for name in ("keys.nc", "keys_copied.nc")]
 assert said and [int(x) for x in said.groups()] == sizes, sizes
+# The job file it shows runs.
+block = readme.split("```toml\n")[1].split("```")[0]
+with open(os.path.join(work, "shown.toml"), "w") as f:
+    f.write(block.replace('"section.dxf"', '"examples/cam/section.dxf"').replace("length = 50.0 ", "length = 2.0 ").replace("twist = 180.0", "twist = 5.0"))
+subprocess.run([burin, "rotary", "shown.toml", "-o", "shown.ngc", "--quiet"], cwd=work, env=env, check=True)
 print("README: commands, listing and figures agree")

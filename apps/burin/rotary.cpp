@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 struct RotaryArgs {
   std::string job, points;
   std::optional<double> tolerance;
+  std::optional<rotary::Tsi> tsi;
+  std::optional<rotary::Tai> tai;
   post::FeedMode feed = post::FeedMode::inverse_time;
 };
 
@@ -233,6 +235,8 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
   if (!file) return file.error();
   if (args.tolerance) file->options.tolerance_mm = *args.tolerance;
   file->options.threads = static_cast<unsigned>(session.common.threads);
+  if (args.tsi) file->options.tsi = *args.tsi;
+  if (args.tai) file->options.tai = *args.tai;
   const fs::path folder = fs::path(args.job).parent_path();
   auto machine = machine_of(*file, folder);
   if (!machine) return machine.error();
@@ -271,7 +275,27 @@ void add_rotary(Cli& cli) {
       "rotary", "finish a rotational part on a 4-axis mill, free of interference",
       "  burin rotary cutter.toml -o cutter.ngc --html report.html\n"
       "  burin rotary cutter.toml --points points.csv --json figures.json\n"
-      "  burin rotary cam.toml --cl cam.cl --feed-mode per-minute --dialect fanuc -o cam.nc\n",
+      "  burin rotary cam.toml --cl cam.cl --feed-mode per-minute --dialect fanuc -o cam.nc\n"
+      "\nA job file (paths are relative to it; mm, degrees):\n"
+      "  [part]                        # X is the rotary axis; drawing x, y become y, z\n"
+      "  section = \"section.dxf\"       # one closed curve around 0, 0; or sections = [{ file, x }, ...],\n"
+      "  length = 50.0                 # surface = \"part.step\", mesh = \"part.stl\" in place of these "
+      "three\n"
+      "  twist = 180.0                 # or stations = [[x, degrees], ...] in place of length and twist\n"
+      "  [tool]\n"
+      "  kind = \"ball\"\n"
+      "  radius = 2.0                  # also: shank_radius\n"
+      "  shank_length = 60.0           # from the ball's centre to the holder\n"
+      "  holder = [{ radius = 20.0, height = 50.0 }]\n"
+      "  [operation]\n"
+      "  pattern = \"rings\"             # rings, spiral, lines\n"
+      "  tolerance = 0.01\n"
+      "  scallop = 0.05                # or side_step\n"
+      "  feed = 600.0                  # mm/min of the tip on the part\n"
+      "  # also: tsi, tai, clearance_angle, lean_angle, smooth, safety, spindle; [stock] radius\n"
+      "  [machine]\n"
+      "  name = \"xyza\"                 # a preset or a file NAME.toml\n"
+      "\nExit code 3: done, but places were not reached or are wrong; each is listed.\n",
       [args](Session& session) { return run_rotary(*args, session); });
   add_text(app, "JOB.toml", args->job, "FILE", "part, tool, operation and machine")->required();
   add_text(app, "--points", args->points, "FILE", "contact points, axes and reachable angles as CSV");
@@ -279,6 +303,14 @@ void add_rotary(Cli& cli) {
       app, "--feed-mode", args->feed,
       {{"inverse-time", post::FeedMode::inverse_time}, {"per-minute", post::FeedMode::per_minute}},
       "G93, or G94 with an F that gives the tip its feed");
+  add_choice<std::optional<rotary::Tsi>>(
+      app, "--tsi", args->tsi, {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}},
+      "where the ball fits: against the whole part, or along the path as in "
+      "the paper; instead of the job's");
+  add_choice<std::optional<rotary::Tai>>(
+      app, "--tai", args->tai, {{"exact", rotary::Tai::exact}, {"section", rotary::Tai::section}},
+      "reachable axes: against the whole part, or in the section as in the "
+      "paper; instead of the job's");
   add_number(app, "--tolerance", args->tolerance, kPositiveLength, "instead of the job's tolerance");
   cli.add_dialect(app);
   cli.add_threads(app);

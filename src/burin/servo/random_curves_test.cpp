@@ -103,7 +103,7 @@ void expect_kept(const std::vector<Stretch>& stretches, const Limits& limits, st
     top = std::max(top, stretch.feed_mm_min > 0 ? stretch.feed_mm_min : limits.rapid_mm_min);
   const double axis = limits.axis_velocity_mm_s * t * (1 + 2e-6) + 4 * noise;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    ASSERT_TRUE(s[i].feed_mm_min <= top * (1 + 1e-6));
+    ASSERT_LE(s[i].feed_mm_min, top * (1 + 1e-9)) << i;
     if (i == 0) continue;
     const Setpoint &a = s[i - 1], &b = s[i];
     ASSERT_LE(std::max({std::abs(b.x - a.x), std::abs(b.y - a.y), std::abs(b.z - a.z)}), axis) << i;
@@ -138,7 +138,8 @@ TEST(Plan, RandomCurvesKeepTheirLimits) {
   for (int i = first; i - first < n && !HasFatalFailure(); ++i)
     expect_kept<test::RandomCurves>(static_cast<std::uint64_t>(i), tally);
   // Seeds beyond the usual number that once failed (chord error between the planner's samples).
-  for (const std::uint64_t seed : {10962U, 14711U, 20238U, 21513U}) expect_kept<test::RandomCurves>(seed, tally);
+  for (const std::uint64_t seed : {10962U, 14711U, 20238U, 21513U})
+    expect_kept<test::RandomCurves>(seed, tally);
   EXPECT_EQ(tally.refused, 0u);
   tally.print(n);
 }
@@ -148,6 +149,9 @@ TEST(Plan, WildRandomCurvesKeepTheirLimits) {
   Tally tally;
   for (int i = first; i - first < n && !HasFatalFailure(); ++i)
     expect_kept<test::WildCurves>(static_cast<std::uint64_t>(i), tally);
+  // Seeds beyond the usual number that once failed: a run of steps far below the slowest one whose length
+  // went to and fro, and one made longer by a feed above the commanded one.
+  for (const std::uint64_t seed : {6703U, 8991U}) expect_kept<test::WildCurves>(seed, tally);
   tally.print(n);
 }
 

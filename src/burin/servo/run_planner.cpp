@@ -16,10 +16,10 @@ constexpr double kAim = 0.999;
 constexpr int kRounds = 12;      ///< of lowering where a limit was passed, then the whole run is slowed
 constexpr int kSlowRounds = 80;  ///< of that
 constexpr int kMissRounds = 8;   ///< of it while only the end is missed
-constexpr int kSettle = 8;       ///< rounds to meet the end
+constexpr int kSettle = 12;      ///< rounds to meet the end
 /// An arc between two setpoints this much longer than its chord is more than a bend of 2 rad.
 constexpr double kSkip = 1.4;
-/// The end missed by less than the first share of the slowest step is taken at once; by more only when
+/// The end missed by less than the first share of the shortest step is taken at once; by more only when
 /// slowing at the bends that were jumped over (kSkipRounds of it) did not help, and only when the path was
 /// not used up long before the profile.
 constexpr double kMissed = 1e-3, kEarly = 0.1;
@@ -107,8 +107,22 @@ Result<void> RunPlanner::make() {
                  "the motion takes " + format_fixed(profile_.back().time, 0) + " s (at most " +
                      std::to_string(kMaxSetpoints) + " periods: a higher feed, or a longer period)",
                  {}};
-  ticks_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(periods * (1 - 1e-12))));
+  count_ticks();
   return {};
+}
+
+void RunPlanner::count_ticks() {
+  const double periods = profile_.back().time / limits_.period_s;
+  ticks_ = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(periods * (1 - 1e-12))));
+}
+
+/// Shortest step that the profile plans: that of a steady part, or the slowest step at which no path can pass
+/// a limit.
+double RunPlanner::shortest_step() const {
+  double v = safe_speed(limits_);
+  for (const ProfilePiece& p : profile_)
+    if (p.a == 0 && p.j == 0 && p.v > 0) v = std::min(v, p.v);
+  return v * limits_.period_s;
 }
 
 double RunPlanner::key(const Cursor& at) const {
@@ -227,13 +241,47 @@ RunPlanner::Passage RunPlanner::walk(bool measure_chords) {
   return found;
 }
 
+/// The profile longer by `step` mm (shorter: negative). The last steady part takes it, so that every setpoint
+/// before stays; where that is too short, the whole profile: slower, or for more length in more time, so that
+/// speed, acceleration and jerk never grow.
+void RunPlanner::lengthen(double step) {
+  constexpr double kMostTaken = 0.5;  // of a steady part
+  const double scale = (total_ + step) / total_;
+  total_ += step;
+  for (std::size_t i = profile_.size() - 1; i-- > 0;) {
+    const ProfilePiece& steady = profile_[i];
+    if (steady.a != 0 || steady.j != 0 || !(steady.v > 0)) continue;
+    if (-step > kMostTaken * (profile_[i + 1].s - steady.s)) continue;
+    const double wait = step / steady.v;
+    for (std::size_t k = i + 1; k < profile_.size(); ++k) {
+      profile_[k].time += wait;
+      profile_[k].s += step;
+    }
+    profile_.back().s = total_;
+    return count_ticks();
+  }
+  const double time = std::max(scale, 1.0), speed = std::min(scale, 1.0);
+  for (ProfilePiece& p : profile_) {
+    p.s *= scale;
+    p.time *= time;
+    p.v *= speed;
+    p.a *= speed / time;
+    p.j *= speed / (time * time);
+  }
+  profile_.back().s = total_;
+  count_ticks();
+}
+
 /// Fits the profile's length to the chords, so that the last tick meets the end.
 Result<RunPlanner::Passage> RunPlanner::settle() {
   const double t = limits_.period_s;
   // What the last step adds must not show in the jerk, and the end is met to 1e-8 mm.
   const double target = std::max(std::min(1e-4 * limits_.jerk_mm_s3 * t * t * t, 1e-9), 4 * rounding_);
-  // Above these, relative, the chords up to each cell are measured again; below, the speed is scaled.
-  constexpr double kRemap = 1e-7, kScale = 1e-6;
+  // Above this, relative, the chords up to each cell are measured again and the run is planned again. Where
+  // bends are smaller than a chord that may go to and fro, as every profile jumps over others of them: after
+  // kMeasure rounds only the profile's length is changed.
+  constexpr double kRemap = 1e-7;
+  constexpr int kMeasure = kSettle / 3;
   Passage passage;
   double total_before = 0, left_before = 0;
   for (int i = 0; i < kSettle; ++i) {
@@ -241,7 +289,7 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
     passage = walk(!last);
     const double left = passage.left_over;
     if (std::abs(left) <= target || last) break;
-    if (std::abs(left) > (i < kSettle / 2 ? kRemap : kScale) * total_) {
+    if (i < kMeasure && std::abs(left) > kRemap * total_) {
       for (std::size_t c = 1; c < cells_.size(); ++c) cells_[c].s0 = cells_[c - 1].s1;
       cells_.back().s1 = total_ = total_ + left;
       if (auto made = make(); !made) return made.error();
@@ -250,25 +298,16 @@ Result<RunPlanner::Passage> RunPlanner::settle() {
       // Secant: where the curvature changes within a chord, the end moves by more or less than the length.
       constexpr double kFlattest = -0.2;
       const double slope = total_before > 0 ? (left - left_before) / (total_ - total_before) : -1;
-      const double step = slope < kFlattest ? -left / slope : left;
       total_before = total_;
       left_before = left;
-      const double scale = (total_ + step) / total_;
-      total_ += step;
-      for (ProfilePiece& p : profile_) {
-        p.s *= scale;
-        p.v *= scale;
-        p.a *= scale;
-        p.j *= scale;
-      }
-      profile_.back().s = total_;
+      lengthen(slope < kFlattest ? -left / slope : left);
     }
   }
   return passage;
 }
 
 bool RunPlanner::acceptable(const Passage& passage, double missed, bool both_ways) const {
-  const double room = missed * safe_speed(limits_) * limits_.period_s + 4 * rounding_;
+  const double room = missed * shortest_step() + 4 * rounding_;
   return passage.worst <= 1 && passage.left_over >= -room && (!both_ways || passage.left_over <= room);
 }
 

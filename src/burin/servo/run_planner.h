@@ -35,6 +35,9 @@ class RunPlanner {
   std::vector<LimitSpan> spans(double tau, double reserve) const;
   void choose();
   Result<void> make();
+  void count_ticks();
+  double shortest_step() const;
+  void lengthen(double step);
   Result<Passage> settle();
   Passage walk(bool measure_chords);
   double chord_ratio(const Cursor& before, const Cursor& now) const;

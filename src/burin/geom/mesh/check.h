@@ -35,7 +35,8 @@ MeshReport examine(const Mesh& mesh);
 /// the mesh.
 Mesh welded(const Mesh& mesh, double tolerance_mm);
 /// Closes gaps narrower than `tolerance_mm`: open corners no farther apart become one, and open edges that
-/// pass an open corner within it are bent through the corner (T-junctions). What is closed already stays.
+/// pass an open corner within it are bent through the corner (T-junctions), narrow holes that stay are
+/// filled. What is closed already stays.
 Mesh stitched(const Mesh& mesh, double tolerance_mm);
 /// Turns triangles so that neighbours agree and every outermost shell has its outside outwards; a shell
 /// within keeps its sense against the outermost one (hollows stay hollow). False, and the mesh as it was,

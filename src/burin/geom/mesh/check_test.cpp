@@ -175,6 +175,36 @@ TEST(MeshWeld, WhereTheToleranceMakesNoSense) {
   EXPECT_EQ(welded(far, 1e-6).triangles.size(), 12U);
 }
 
+TEST(MeshStitch, SeamsOfOtherCornersAreClosed) {
+  // Two pieces of a cylinder that share a circle, each with corners of its own on it, and a gap besides.
+  for (const std::uint32_t n : {32U, 33U, 47U, 64U}) {
+    const auto piece = [](std::uint32_t around, double from, double to) {
+      return cases::tube(around, 4, [=](double u, double v) {
+        const double a = 2 * kPi * u + 0.003;
+        return Point3{from + (to - from) * v, 10 * std::cos(a), 10 * std::sin(a)};
+      });
+    };
+    Mesh mesh = piece(32, 0, 15);
+    append(mesh, piece(n, 15.001, 30), false);
+    const double sag = 10 * (1 - std::cos(kPi / 32));
+    EXPECT_EQ(examine(mesh).holes.size(), 4U);
+    const Mesh closed = stitched(mesh, 1.1 * sag);
+    const MeshReport report = examine(closed);
+    ASSERT_EQ(report.holes.size(), 2U) << n;
+    EXPECT_EQ(report.holes[0].box.hi.x, 0);
+    EXPECT_EQ(report.holes[1].box.lo.x, 30);
+    EXPECT_EQ(report.shared_by_many + report.against_sense, 0U) << n;
+    // Not with less than the gap.
+    EXPECT_GT(examine(stitched(mesh, 1e-4)).holes.size(), 2U);
+  }
+}
+
+TEST(MeshStitch, WhatIsClosedStays) {
+  const Mesh mesh = cases::cutter(800, 20, 10, 6, 5, 0.2);
+  EXPECT_EQ(stitched(mesh, 1).triangles, welded(mesh, 0).triangles);
+  EXPECT_EQ(stitched(Mesh{}, 1).triangles.size(), 0U);
+}
+
 std::vector<std::array<std::uint32_t, 3>> turned_to_lowest(const Mesh& mesh) {
   auto out = mesh.triangles;
   for (auto& t : out) std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstddef>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "burin/geom/box_tree.h"
@@ -122,6 +124,41 @@ bool split_edges(Mesh& mesh, double tolerance) {
   return any;
 }
 
+/// Whether a loop lies along one line within the tolerance: what is left of a seam.
+bool is_sliver(const std::vector<Point3>& loop, double tolerance) {
+  std::size_t far = 0;  // from the first, and then from that one: nearly the longest distance
+  for (int i = 0; i < 2; ++i) {
+    const Point3 start = loop[far];
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      if (distance(loop[k], start) > distance(loop[far], start)) far = k;
+    }
+    if (i == 1) {
+      const Vec3 e = unit(loop[far] - start);
+      return std::all_of(loop.begin(), loop.end(), [&](Point3 p) {
+        const Vec3 g = p - start;
+        return norm(g - dot(g, e) * e) <= tolerance;
+      });
+    }
+  }
+  return false;
+}
+
+/// Closes narrow holes with fans. Where two seams have the same corners in another order, their edges cross
+/// and leave such holes.
+void fill_slivers(Mesh& mesh, double tolerance) {
+  std::map<std::tuple<double, double, double>, std::uint32_t> at;
+  for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
+    at.emplace(std::tuple(mesh.vertices[i].x, mesh.vertices[i].y, mesh.vertices[i].z), i);
+  for (const MeshHole& hole : examine(mesh).holes) {
+    if (hole.points.size() < 3 || !is_sliver(hole.points, tolerance)) continue;
+    std::vector<std::uint32_t> loop;
+    for (const Point3& p : hole.points) loop.push_back(at.at(std::tuple(p.x, p.y, p.z)));
+    // The loop runs as its triangles do; what closes it runs against it.
+    for (std::size_t k = 1; k + 1 < loop.size(); ++k)
+      mesh.triangles.push_back({loop[0], loop[k + 1], loop[k]});
+  }
+}
+
 }  // namespace
 
 Mesh stitched(const Mesh& mesh, double tolerance_mm) {
@@ -129,7 +166,9 @@ Mesh stitched(const Mesh& mesh, double tolerance_mm) {
   // A triangle has three sides; a fan's new sides may pass corners again. Few rounds do, more do no good.
   constexpr int kRounds = 6;
   for (int i = 0; i < kRounds && split_edges(out, tolerance_mm); ++i) out = welded(out, 0);
-  return out;
+  Mesh filled = out;
+  fill_slivers(filled, tolerance_mm);
+  return find_edges(filled).shared_by_many > find_edges(out).shared_by_many ? out : filled;
 }
 
 }  // namespace burin::geom

@@ -58,8 +58,10 @@ struct Motion {
   /// Surface parameters along `path` (cut and link on the surface): one node of (u, v, 0) for each node of
   /// path, the same t; empty otherwise.
   geom::QuinticPath uv;
-  int surface = -1;     ///< index of the joined surface; -1: none
-  int pass = -1;        ///< number of the path on that surface, from 0; -1 for links and rapids
+  int surface = -1;  ///< index of the joined surface; -1: none
+  /// Number of the path on that surface, from 0; also of the links by which it runs over the edges. -1 for
+  /// links between paths and for rapids.
+  int pass = -1;
   double lift_max = 0;  ///< how far it was lifted above the surface at most
 };
 

@@ -128,8 +128,9 @@ inline std::vector<Point3> centres(const SurfacePlan& plan, double radius, doubl
   return out;
 }
 
+/// The paths, with what they run over the edges of the surface.
 inline bool cuts(const Motion& m) {
-  return m.kind == MotionKind::cut;
+  return m.pass >= 0;
 }
 
 /// How much stands above q along n after balls at all centres have cut.

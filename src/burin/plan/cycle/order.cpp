@@ -96,7 +96,8 @@ class Planner {
     for (TrackPiece& p : track) {
       // Pieces meet exactly, whatever rounding left between them.
       if (!chain.empty()) p.tip.nodes.front().p = chain.back().track.tip.nodes.back().p;
-      chain.push_back({std::move(p), MotionKind::cut, &sheet_, surface_, pass_, back, 0});
+      const MotionKind kind = p.over ? MotionKind::link : MotionKind::cut;
+      chain.push_back({std::move(p), kind, &sheet_, surface_, pass_, back, 0});
     }
   }
 
@@ -174,6 +175,28 @@ class Planner {
 
 }  // namespace
 
+namespace {
+
+/// The track over t, with what lies beyond the edges told apart.
+Track kept_track(const Pass& pass, geom::Interval t) {
+  if (!pass.inner) return cut_track(pass.track, t.lo, t.hi);
+  Track out;
+  const auto add = [&](double lo, double hi, bool over) {
+    if (!(lo < hi)) return;
+    for (TrackPiece& p : cut_track(pass.track, lo, hi)) {
+      p.over = over;
+      out.push_back(std::move(p));
+    }
+  };
+  const double lo = std::clamp(pass.inner->lo, t.lo, t.hi), hi = std::clamp(pass.inner->hi, t.lo, t.hi);
+  add(t.lo, lo, true);
+  add(lo, hi, false);
+  add(hi, t.hi, true);
+  return out;
+}
+
+}  // namespace
+
 std::vector<Stretch> stretches(Passes& passes, const Region& region, geom::Direction along) {
   std::vector<Stretch> out;
   for (std::size_t i = 0; i < passes.passes.size(); ++i) {
@@ -185,7 +208,7 @@ std::vector<Stretch> stretches(Passes& passes, const Region& region, geom::Direc
         if (!(t.lo < t.hi)) continue;
         Stretch s;
         s.pass = static_cast<int>(i);
-        s.track = whole ? std::move(pass.track) : cut_track(pass.track, t.lo, t.hi);
+        s.track = whole ? std::move(pass.track) : kept_track(pass, t);
         if (s.track.empty() || chord_length(s.track) < kShortest) continue;
         s.from = {t.lo, g.at(t.lo).w};
         s.to = {t.hi, g.at(t.hi).w};

@@ -60,7 +60,7 @@ void run_over_edges(const Sheet& sheet, const PassTask& task, Passes& r) {
   std::vector<Before> centres;
   centres.reserve(r.passes.size());
   for (Pass& p : r.passes) {
-    p.kept = task.inner_t;
+    p.kept = p.inner = task.inner_t;
     centres.emplace_back(p, sheet.radius());
   }
   for (const bool first : {true, false}) {

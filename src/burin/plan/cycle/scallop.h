@@ -35,6 +35,7 @@ struct Pass {
   std::vector<Section> fitting;
   /// What of t is cut: the sheet may go on beyond what is machined. Nothing: all.
   std::optional<geom::Interval> kept;
+  std::optional<geom::Interval> inner;  ///< of that, what lies on the surface
 
   bool covers(double t) const;
   double w_at(double t) const;  ///< of the graph that holds t, or the nearest one

@@ -19,6 +19,7 @@ struct TrackPiece {
   geom::QuinticPath uv;
   double s0 = 0, s1 = 0;  ///< range of s; equal when `swing`
   bool swing = false;
+  bool over = false;  ///< beyond the edge of the surface: the parameters stay on it, and say nothing
 };
 using Track = std::vector<TrackPiece>;
 

@@ -165,8 +165,8 @@ Result<Part> make_meshed(Mesh mesh, const std::string& name, const PartOptions& 
   part.name = name;
   if (const auto holes = bad_holes(geom::examine(mesh), options.deflection_mm); !holes.empty()) {
     Mesh closed = geom::stitched(mesh, options.deflection_mm);
-    if (closed.triangles.empty() || !bad_holes(geom::examine(closed), options.deflection_mm).empty())
-      return holes_error(holes);
+    const auto left = bad_holes(geom::examine(closed), options.deflection_mm);
+    if (closed.triangles.empty() || !left.empty()) return holes_error(left.empty() ? holes : left);
     mesh = std::move(closed);
     part.deflection_mm = options.deflection_mm;
     diagnostics.info("mesh_stitched", std::to_string(holes.size()) + " gaps of the mesh narrower than " +

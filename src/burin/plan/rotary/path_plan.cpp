@@ -79,11 +79,16 @@ class PathPlanner {
     const double length = line_.length();
     if (nodes_.size() > 1 && nodes_.back().s - nodes_.front().s >= length * (1 - 1e-12)) nodes_.pop_back();
     std::size_t best = 0;
-    double nearest_mm = std::numeric_limits<double>::infinity();
+    double least = std::numeric_limits<double>::infinity();
+    // Where the axis has hardly more than a turn, rings begin at its end and are cut to and fro.
+    const RotaryOptions& o = shared_.options;
+    const bool narrow = o.theta_max - o.theta_min < 4 * geom::kPi;
+    const double seam = (o.theta_min + o.theta_max) / 2 - geom::kPi;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const double d = geom::distance(nodes_[i].place.center, start_.center);
-      if (d < nearest_mm) {
-        nearest_mm = d;
+      const double d = narrow ? std::abs(turned_by(nodes_[i].initial - seam))
+                              : geom::distance(nodes_[i].place.center, start_.center);
+      if (d < least) {
+        least = d;
         best = i;
       }
     }
@@ -122,8 +127,7 @@ class PathPlanner {
     o.smooth = shared_.options.smooth && shared_.section == nullptr;
     o.lean = shared_.options.lean;
     o.start = start_.theta;
-    const AxisChain chain =
-        dense_.closed && free_.empty() ? round_and_round(layers, o) : choose_axes(layers, o);
+    const AxisChain chain = dense_.closed ? round_and_round(layers, o) : choose_axes(layers, o);
     std::vector<char> broken(nodes_.size(), 0);
     for (const std::size_t b : chain.breaks) broken[b] = 1;
     broken_ = std::move(broken);

@@ -47,25 +47,19 @@ Corners corners_of(const LeafBlock& leaf, int lane, geom::Point3 center) {
   return c;
 }
 
-/// The gaps between the arcs, cut into pieces no wider than `widest`.
-void cut_gaps(const Arcs& arcs, double widest, std::vector<ReachGap>& out) {
-  out.clear();
-  for (const AngleInterval& gap : arcs.gaps()) {
-    const double n = std::ceil((gap.hi - gap.lo) / widest), half = (gap.hi - gap.lo) / (2 * n);
-    ReachGap piece{};
-    for (double k = 0; k < n; ++k) {
-      const auto direction = [&](double halves, double(&to)[2]) {
-        const double angle = gap.lo + halves * half;
-        to[0] = std::cos(angle);
-        to[1] = std::sin(angle);
-      };
-      direction(2 * k, piece.from);
-      direction(2 * k + 1, piece.middle);
-      direction(2 * k + 2, piece.to);
-      piece.cos_half = std::cos(half);
-      piece.sin_half = std::sin(half);
-      out.push_back(piece);
-    }
+/// From a to b counter-clockwise, halved until no piece's half width has a cosine below `least_cos`. `wide`:
+/// more than half the circle.
+void cut_gap(geom::Vec2 a, geom::Vec2 b, bool wide, double least_cos, std::vector<ReachGap>& out) {
+  const geom::Vec2 sum = a + b;
+  // Opposite, or nearly: the sum has no direction.
+  geom::Vec2 middle = norm2(sum) < 1e-8 ? geom::left(a) : wide ? -unit(sum) : unit(sum);
+  const double cos_half = dot(a, middle);
+  if (wide || cos_half < least_cos) {
+    cut_gap(a, middle, false, least_cos, out);
+    cut_gap(middle, b, false, least_cos, out);
+  } else {
+    // Rounded up: the lower line stands no higher than it must.
+    out.push_back({{a.x, a.y}, {b.x, b.y}, {middle.x, middle.y}, cos_half, std::abs(cross(a, middle))});
   }
 }
 
@@ -81,15 +75,17 @@ class Walk {
     gaps_.reserve(8);
   }
 
-  void run(const Piece& piece) {
+  /// Stops early when less than `enough` (radians) is left.
+  void run(const Piece& piece, double enough = 0) {
     if (tree_.nodes.empty() || arcs_.all()) return;
     piece_ = &piece;
+    enough_ = enough;
     query_ = {center_.x, center_.y, center_.z, piece.h0, piece.h1, piece.radius, nullptr, 0};
     changed();
     if (arcs_.none()) dive();
     waiting_.clear();
     open(0);
-    while (!waiting_.empty() && !arcs_.all()) {
+    while (!waiting_.empty() && !arcs_.all() && enough_left_) {
       std::pop_heap(waiting_.begin(), waiting_.end(), less);
       const Waiting w = waiting_.back();
       waiting_.pop_back();
@@ -123,7 +119,11 @@ class Walk {
   void changed() {
     ++state_;
     if (arcs_.none()) return;
-    cut_gaps(arcs_, piece_->h0 > 0 ? kNarrow : kWide, gaps_);
+    gaps_.clear();
+    arcs_.for_gaps([this](geom::Vec2 a, geom::Vec2 b, bool wide) {
+      cut_gap(a, b, wide, piece_->h0 > 0 ? kNarrow : kWide, gaps_);
+    });
+    if (enough_ > 0) enough_left_ = total(arcs_.gaps()) >= enough_;
     query_.gaps = gaps_.data();
     query_.gap_count = static_cast<int>(gaps_.size());
   }
@@ -156,10 +156,19 @@ class Walk {
     look(tree_.leaves[at - kLeaf]);
   }
 
+  /// Asks for the memory of what is likely opened soon.
+  void fetch(std::uint32_t child) const {
+    const char* at = child >= kLeaf ? reinterpret_cast<const char*>(&tree_.leaves[child - kLeaf])
+                                    : reinterpret_cast<const char*>(&tree_.nodes[child]);
+    constexpr std::size_t kLine = 64;
+    for (std::size_t i = 0; i < sizeof(LeafBlock); i += kLine) __builtin_prefetch(at + i);
+  }
+
   void open(std::uint32_t at) {
     kernels_.boxes(tree_.nodes[at], query_, found_);
     for (int i = 0; i < 4; ++i) {
       if (!matters(i)) continue;
+      fetch(tree_.nodes[at].child[i]);
       waiting_.push_back({key(i), 4 * at + static_cast<std::uint32_t>(i), state_});
       std::push_heap(waiting_.begin(), waiting_.end(), less);
     }
@@ -188,14 +197,15 @@ class Walk {
 
   // A gap that is cut into narrower pieces is described better (its middle line stands nearer to the lower
   // ends of the cylinder), which matters for cylinders that begin far from the centre.
-  static constexpr double kWide = 2.1, kNarrow = 0.8;
+  static constexpr double kWide = 0.5, kNarrow = 0.92;  // cosines of half the width
 
   const ReachTree& tree_;
   const ReachKernels& kernels_;
   geom::Point3 center_;
   Arcs& arcs_;
   const Piece* piece_ = nullptr;
-  double rounding_mm_ = 0;
+  double rounding_mm_ = 0, enough_ = 0;
+  bool enough_left_ = true;
   ReachQuery query_;
   ReachFound found_;
   std::vector<Waiting> waiting_;

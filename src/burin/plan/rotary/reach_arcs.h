@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "burin/geom/vec.h"
 #include "burin/plan/rotary/reach.h"
 
 namespace burin::rotary::detail {
@@ -17,6 +18,10 @@ inline double turn_of(double c, double s) {
   return std::copysign(1 - c / (std::abs(c) + std::abs(s)), s);
 }
 double angle_of_turn(double turn);
+inline geom::Vec2 direction_of_turn(double turn) {
+  const double c = 1 - std::abs(turn);
+  return unit(geom::Vec2{c, std::copysign(1 - std::abs(c), turn)});
+}
 
 /// What the angles may be off. Where a point stands as far away as the piece is wide (the place that the ball
 /// touches, and all of a flat face beside it), rounding of squares (1e-16) becomes 1e-8 in the angle, as the
@@ -40,6 +45,16 @@ class Arcs {
   bool all() const { return arcs_.size() == 1 && arcs_[0].lo <= -2 && arcs_[0].hi >= 2; }
   /// What is left.
   AngleSet gaps() const;
+  /// The same as axis directions (cosine, sine) at the ends, and whether it is more than half the circle. Not
+  /// for none().
+  template <class Gap>
+  void for_gaps(const Gap& gap) const {
+    for (std::size_t i = 0; i < arcs_.size(); ++i) {
+      const bool last = i + 1 == arcs_.size();
+      const double lo = arcs_[i].hi, hi = last ? arcs_[0].lo + 4 : arcs_[i + 1].lo;
+      if (hi - lo > kSlack) gap(direction_of_turn(lo), direction_of_turn(last ? hi - 4 : hi), hi - lo > 2);
+    }
+  }
 
  private:
   struct Arc {
