@@ -4,9 +4,11 @@
 // parts.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <random>
 
 #include "burin/base/text.h"
@@ -125,15 +127,8 @@ const kinematics::Kinematics& machine() {
   return k;
 }
 
-/// Nothing when the part or the tool is refused for a reason.
-std::optional<Outcome> planned(unsigned seed) {
-  Random r(seed);
-  Outcome out;
-  const rotary::SweptSection swept = random_swept(r);
-  out.tool = random_tool(r);
-  out.options.pattern = static_cast<rotary::Pattern>(r.below(3));
-  out.options.scallop = r.in(0.05, 0.3);
-  out.options.tolerance_mm = r.below(3) == 0 ? 0.03 : 0.01;
+/// With tool and options given. Nothing when the part or the tool is refused for a reason.
+std::optional<Outcome> plan_of(const rotary::SweptSection& swept, Outcome out) {
   rotary::PartOptions part_options;
   part_options.deflection_mm = kMeshShare * out.options.tolerance_mm;
   auto part = rotary::make_swept(swept, part_options);
@@ -154,6 +149,17 @@ std::optional<Outcome> planned(unsigned seed) {
   if (!path) return {};
   out.joints = std::move(*path);
   return out;
+}
+
+std::optional<Outcome> planned(unsigned seed) {
+  Random r(seed);
+  Outcome out;
+  const rotary::SweptSection swept = random_swept(r);
+  out.tool = random_tool(r);
+  out.options.pattern = static_cast<rotary::Pattern>(r.below(3));
+  out.options.scallop = r.in(0.05, 0.3);
+  out.options.tolerance_mm = r.below(3) == 0 ? 0.03 : 0.01;
+  return plan_of(swept, std::move(out));
 }
 
 /// What is left standing is said: within a ball's reach of a point that was moved, or is unreachable.
@@ -258,6 +264,41 @@ TEST(RotaryJob, RandomPartsAreCutWithoutGouge) {
       "tolerance\n",
       done, moved, unreachable, worst);
   EXPECT_GE(done, cases / 2);
+}
+
+/// Rings that no end is near are planned as one: they are the same, turned and moved, and gouge as little.
+TEST(RotaryJob, InnerRingsOfAUniformSweepAreTheSame) {
+  Outcome asked;
+  asked.tool.radius = asked.tool.shank_radius = 1;
+  asked.tool.shank_length = 30;
+  asked.options.side_step = 1.5;
+  const double length = 8;
+  const auto out = plan_of({cases::cutter(5, 8, 5, 0.5), {{0, 0}, {length, 0.8}}}, std::move(asked));
+  ASSERT_TRUE(out);
+  const RotaryCheck check =
+      check_rotary_moves(out->part, out->tool, moves_of(*out), machine(), out->options.tolerance_mm);
+  EXPECT_LE(check.report.gouge_max_mm(), (1 + kMotionShare) * out->options.tolerance_mm);
+  // Every planned centre of one ring stands on every other.
+  std::vector<std::vector<Point3>> rings;
+  std::size_t path = std::numeric_limits<std::size_t>::max();
+  for (const rotary::RotaryPoint& p : out->plan.points) {
+    const double turn = -out->part.swept->turn_at(length * p.place.contact.w), w = p.place.contact.w;
+    if (length * w < 2 || length * (1 - w) < 2) continue;
+    if (p.path != path) rings.emplace_back();
+    path = p.path;
+    const Point3 c = p.place.center;
+    rings.back().push_back({c.x - length * w, c.y * std::cos(turn) - c.z * std::sin(turn),
+                            c.y * std::sin(turn) + c.z * std::cos(turn)});
+  }
+  ASSERT_GE(rings.size(), 3U);
+  for (const auto& ring : rings) {
+    std::size_t same = 0;
+    for (const Point3 p : ring)
+      same += std::any_of(rings[0].begin(), rings[0].end(),
+                          [&](Point3 q) { return geom::distance(p, q) < 1e-9; });
+    // (The motion's proofs add points of their own.)
+    EXPECT_GT(10 * same, 8 * std::min(ring.size(), rings[0].size()));
+  }
 }
 
 }  // namespace

@@ -270,7 +270,9 @@ class PathPlanner {
     prove_all();
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       Node& node = nodes_[i];
-      if (i == 0 || !both_open(i) || broken_[i]) node.cut = false;
+      // (A step that the last choice calls a break stays cut when it was proven with these very angles: it
+      // was not halved either.)
+      if (i == 0 || !both_open(i)) node.cut = false;
       if (!node.open()) node.place.state = State::unreachable;
       if (i == 0 || node.cut) continue;
       line_.between(nodes_[i - 1].s, node.s, [&](const Place& p) {
