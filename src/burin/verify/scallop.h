@@ -31,8 +31,8 @@ struct ScallopReport {
   std::size_t samples = 0;
   /// Material left above the surface between pass i and i + 1, largest along the line between them: minimum
   /// and maximum of that ridge over the length of pass i. Where pass i + 1 has no place abreast (it ends, or
-  /// stops at a border) or the ball stands over an edge, what is left counts for the maximum only. Infinite and 0 where there is no such
-  /// place at all.
+  /// stops at a border) or the ball stands over an edge, what is left counts for the maximum only. Infinite
+  /// and 0 where there is no such place at all.
   struct Ridge {
     double min_mm = 0, max_mm = 0;
   };

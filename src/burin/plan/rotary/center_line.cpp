@@ -51,8 +51,8 @@ Place CenterLine::at(double s) const {
   if (std::abs(b.contact.u - a.contact.u) < 0.5)
     out.contact.u = a.contact.u + t * (b.contact.u - a.contact.u);
   out.contact.w = a.contact.w + t * (b.contact.w - a.contact.w);
-  // Where the ball rolls it stands on its contact. Else the two places are of different contacts, and what lies between
-  // may be inside of the part: the nearer one stands for it.
+  // Where the ball rolls it stands on its contact. Else the two places are of different contacts, and what
+  // lies between may be inside of the part: the nearer one stands for it.
   const geom::Point3 rolling = out.contact.p + radius_ * out.contact.n;
   if (geom::distance(rolling, lerp(a.center, b.center, t)) > accuracy_) return t < 0.5 ? a : b;
   out.center = rolling;
