@@ -15,8 +15,12 @@ double sampled(const SweptSection& swept, Point3 c, double spacing) {
   double best = 1e300;
   const double length = swept.stations.back().x;
   const int rows = static_cast<int>(length / spacing) + 1;
-  for (int k = 0; k <= rows; ++k) {
-    const double x = length * k / rows, turn = swept.turn_at(x), co = std::cos(turn), si = std::sin(turn);
+  std::vector<double> places;
+  for (int k = 0; k <= rows; ++k) places.push_back(length * k / rows);
+  // The distance has a kink where the twist jumps.
+  for (const Station& s : swept.stations) places.push_back(s.x);
+  for (const double x : places) {
+    const double turn = swept.turn_at(x), co = std::cos(turn), si = std::sin(turn);
     const geom::Point2 back{c.y * co + c.z * si, c.z * co - c.y * si};
     const double d = distance_to(swept.section, back);
     best = std::min(best, std::hypot(d, x - c.x));
