@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/point_tools.h"
 #include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
 #include "burin/verify/sweep.h"
@@ -29,10 +30,6 @@ struct Station {
   Vec3 along;  ///< unit
   geom::SurfacePoint foot;
 };
-
-bool finite(Point3 p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
 
 /// Every chord of a pass.
 template <class Each>
@@ -154,10 +151,8 @@ class Measure {
     Abreast best;
     double least = std::numeric_limits<double>::infinity();
     for_chords(pass, [&](Point3 tip_a, Point3 tip_b) {
-      const Point3 a = center_of(tip_a, options_.radius_mm);
-      const Vec3 d = tip_b - tip_a;
-      const double l2 = dot(d, d);
-      const Point3 p = a + (l2 > 0 ? std::clamp(dot(from.center - a, d) / l2, 0.0, 1.0) : 0.0) * d;
+      const Point3 p = nearest_on_segment(from.center, center_of(tip_a, options_.radius_mm),
+                                          center_of(tip_b, options_.radius_mm));
       const double far = distance(p, from.center);
       if (far < least) {
         least = far;
@@ -241,7 +236,7 @@ ScallopReport measure_scallop(const geom::NurbsSurface& surface, const std::vect
   bool usable = geom::validate(surface).ok() && options.radius_mm > 0 && std::isfinite(options.radius_mm) &&
                 std::isfinite(options.stock_mm) && std::isfinite(options.spacing_mm) && !passes.empty();
   for (const TipPass& pass : passes)
-    for_chords(pass, [&](Point3 a, Point3 b) { usable = usable && finite(a) && finite(b); });
+    for_chords(pass, [&](Point3 a, Point3 b) { usable = usable && is_finite(a) && is_finite(b); });
   if (!usable) return {};
   return Measure(surface, passes, options).run();
 }

@@ -96,6 +96,13 @@ TEST(Sweep, EntersLikeBruteForce) {
   EXPECT_GT(hits, 8);
 }
 
+void expect_ridges(const ScallopReport& report, double height, double within) {
+  for (const auto& ridge : report.ridges) {
+    EXPECT_NEAR(ridge.min_mm, height, within);
+    EXPECT_NEAR(ridge.max_mm, height, within);
+  }
+}
+
 TEST(Scallop, PlaneHasTheClosedForm) {
   for (const double slope : {0.0, 0.5}) {
     for (const double step : {0.2, 1.0, 3.0}) {
@@ -103,10 +110,7 @@ TEST(Scallop, PlaneHasTheClosedForm) {
       const ScallopReport report = measure_scallop(
           plane(20, slope), parallel_on_plane(radius, slope, step, 5, 20), {.radius_mm = radius});
       ASSERT_EQ(report.ridges.size(), 4u);
-      for (const auto& ridge : report.ridges) {
-        EXPECT_NEAR(ridge.min_mm, expected, 1e-7);
-        EXPECT_NEAR(ridge.max_mm, expected, 1e-7);
-      }
+      expect_ridges(report, expected, 1e-7);
       EXPECT_LT(report.gouge_max_mm, 1e-9);
     }
   }
@@ -128,10 +132,7 @@ TEST(Scallop, CylinderHasTheClosedForm) {
   const double half = (rho + radius) * std::sin(angle / 2);
   const double expected =
       (rho + radius) * std::cos(angle / 2) - std::sqrt(radius * radius - half * half) - rho;
-  for (const auto& ridge : report.ridges) {
-    EXPECT_NEAR(ridge.min_mm, expected, 1e-7);
-    EXPECT_NEAR(ridge.max_mm, expected, 1e-7);
-  }
+  expect_ridges(report, expected, 1e-7);
 }
 
 /// Where two balls of radius `ball` meet whose centres lie at half the angle on either side of a circle of
@@ -156,10 +157,7 @@ TEST(Scallop, InsideOfACylinder) {
   const bool reversed = geom::normal(s, 1.0, 0.5).z < 0;
   const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
   ASSERT_EQ(report.ridges.size(), 5u);
-  for (const auto& ridge : report.ridges) {
-    EXPECT_NEAR(ridge.min_mm, cusp(rho, radius, angle, true), 1e-7);
-    EXPECT_NEAR(ridge.max_mm, cusp(rho, radius, angle, true), 1e-7);
-  }
+  expect_ridges(report, cusp(rho, radius, angle, true), 1e-7);
   EXPECT_LT(report.gouge_max_mm, 1e-9);
 }
 
@@ -215,10 +213,7 @@ TEST(Scallop, CirclesOfLatitudeOnASphere) {
   const bool reversed = geom::normal(s, 0.5, 0.5).z < 0;
   const ScallopReport report = measure_scallop(s, passes, {.radius_mm = radius, .normal_reversed = reversed});
   ASSERT_EQ(report.ridges.size(), 7u);
-  for (const auto& ridge : report.ridges) {
-    EXPECT_NEAR(ridge.min_mm, cusp(rho, radius, angle, false), 1e-5);
-    EXPECT_NEAR(ridge.max_mm, cusp(rho, radius, angle, false), 1e-5);
-  }
+  expect_ridges(report, cusp(rho, radius, angle, false), 1e-5);
   EXPECT_LT(report.gouge_max_mm, 1e-5);
 }
 

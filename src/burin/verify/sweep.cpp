@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "burin/geom/point_tools.h"
+
 namespace burin::verify {
 namespace {
 
@@ -15,8 +17,8 @@ using geom::Vec3;
 constexpr std::uint32_t kLeaf = 4;
 constexpr double kRounding = 1e-12;  // of the half diagonal of a box, as a bound
 
-double middle(const Sweep::Segment& s, int axis) {
-  return axis == 0 ? s.a.x + s.b.x : axis == 1 ? s.a.y + s.b.y : s.a.z + s.b.z;
+double middle(const Sweep::Segment& s, std::size_t axis) {
+  return component(s.a, axis) + component(s.b, axis);
 }
 
 /// Where the line enters a ball, and leaves it.
@@ -91,7 +93,7 @@ void Sweep::split(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
     return;
   }
   const Vec3 size = centers.hi - centers.lo;
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const std::uint32_t half = begin + (end - begin) / 2;
   std::nth_element(segments_.begin() + begin, segments_.begin() + half, segments_.begin() + end,
                    [axis](const Segment& a, const Segment& b) { return middle(a, axis) < middle(b, axis); });
