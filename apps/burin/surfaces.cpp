@@ -7,6 +7,7 @@
 #include <string>
 
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 #include "burin/geom/surface/evaluate.h"
 #include "burin/io/step/read_step.h"
 #include "burin/nc/surface_program.h"
@@ -22,7 +23,6 @@ using geom::Point3;
 using geom::Vec3;
 
 enum class Up { px, mx, py, my, pz, mz };
-enum class Origin { part, top, corner, given };
 
 struct SurfacesArgs {
   std::string part;
@@ -103,24 +103,26 @@ struct Setup {
   }
 };
 
+/// A zero farther off than any machine reaches is a mistake.
+constexpr double kMostOrigin_mm = 1e6;
+
 /// "part", "top", "corner" or X,Y,Z in the axes of the program.
 Result<Vec3> shift_of(const std::string& origin, const geom::Box3& box) {
   const std::string word = to_lower(origin);
   if (word == "part") return Vec3{};
   if (word == "top") return Vec3{-0.5 * (box.lo.x + box.hi.x), -0.5 * (box.lo.y + box.hi.y), -box.hi.z};
   if (word == "corner") return Vec3{-box.lo.x, -box.lo.y, -box.hi.z};
+  const Error not_understood =
+      usage("--origin: " + origin + " is not understood (part, top, corner, or a point X,Y,Z in mm)");
   std::vector<double> values;
   for (std::size_t from = 0; from <= origin.size();) {
     const std::size_t comma = std::min(origin.find(',', from), origin.size());
     const auto value = parse_double(std::string_view(origin).substr(from, comma - from));
     from = comma + 1;
-    if (value && std::abs(*value) <= 1e6)
-      values.push_back(*value);
-    else
-      values.clear(), from = origin.size() + 1;
+    if (!value || std::abs(*value) > kMostOrigin_mm) return not_understood;
+    values.push_back(*value);
   }
-  if (values.size() != 3)
-    return usage("--origin: " + origin + " is not understood (part, top, corner, or a point X,Y,Z in mm)");
+  if (values.size() != 3) return not_understood;
   return Vec3{-values[0], -values[1], -values[2]};
 }
 
@@ -128,14 +130,7 @@ Result<Vec3> shift_of(const std::string& origin, const geom::Box3& box) {
 
 bool inside(const std::vector<io::TrimLoop>& loops, geom::Point2 q) {
   bool in = loops.empty();
-  for (const io::TrimLoop& loop : loops) {
-    const auto& p = loop.points;
-    for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++) {
-      if ((p[i].y > q.y) != (p[j].y > q.y) &&
-          q.x < p[i].x + (p[j].x - p[i].x) * (q.y - p[i].y) / (p[j].y - p[i].y))
-        in = !in;
-    }
-  }
+  for (const io::TrimLoop& loop : loops) in ^= geom::inside_polygon(loop.points, q);
   return in;
 }
 

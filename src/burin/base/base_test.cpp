@@ -12,6 +12,7 @@
 #include "burin/base/file.h"
 #include "burin/base/result.h"
 #include "burin/base/text.h"
+#include "burin/base/utf8.h"
 
 namespace burin {
 namespace {
@@ -76,6 +77,42 @@ TEST(File, WriteReplacesWholeAndLeavesNothingOnFailure) {
   EXPECT_FALSE(read_file(path, 2).ok());
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
   std::filesystem::remove_all(folder);
+}
+
+/// The number that well-formed bytes of one character spell, by the table of the standard.
+std::uint32_t spelled(const std::string& bytes) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  if (bytes.size() == 1) return at(0);
+  std::uint32_t number = at(0) & (0x7Fu >> bytes.size());
+  for (std::size_t i = 1; i < bytes.size(); ++i) number = number * 64 + (at(i) - 0x80u);
+  return number;
+}
+
+TEST(Utf8, EveryCharacterIsSpelledOnce) {
+  for (std::uint32_t c = 0; c <= 0x110000; c += c < 0x3000 || c > 0x10FF00 ? 1 : 7) {
+    std::string bytes;
+    append_utf8(bytes, c);
+    const bool none = (c >= 0xD800 && c < 0xE000) || c > 0x10FFFF;
+    ASSERT_EQ(spelled(bytes), none ? kReplacementCharacter : c);
+    ASSERT_TRUE(is_utf8(bytes)) << c;
+    ASSERT_FALSE(bytes.size() > 1 && is_utf8(bytes.substr(1))) << c;
+    ASSERT_FALSE(bytes.size() > 1 && is_utf8(bytes.substr(0, bytes.size() - 1))) << c;
+  }
+}
+
+TEST(Utf8, RefusesWhatIsNoCharacter) {
+  for (int a = 0; a < 256; ++a) {
+    for (int b = 0; b < 256; ++b) {
+      const std::string bytes{static_cast<char>(a), static_cast<char>(b)};
+      const bool two = a >= 0xC2 && a < 0xE0 && b >= 0x80 && b < 0xC0;
+      ASSERT_EQ(is_utf8(bytes), two || (a < 0x80 && b < 0x80)) << a << " " << b;
+    }
+  }
+  for (const char* bytes : {"\xE0\x9F\xBF", "\xED\xA0\x80", "\xF0\x8F\xBF\xBF", "\xF4\x90\x80\x80",
+                            "\xF5\x80\x80\x80", "\xE2\x82", "a\xE2\x82z"})
+    EXPECT_FALSE(is_utf8(bytes));
+  EXPECT_TRUE(is_utf8(""));
+  EXPECT_TRUE(is_utf8("\xED\x9F\xBF\xEE\x80\x80\xF4\x8F\xBF\xBF"));
 }
 
 TEST(File, Sha256OfTheStandardsExamples) {

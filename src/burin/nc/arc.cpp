@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 
 namespace burin::nc {
 namespace {
@@ -21,14 +22,23 @@ Error geometry(std::string message) {
 constexpr std::array<const char*, 3> kPlaneName = {"G17", "G18", "G19"};
 constexpr std::array<char, 3> kOffset = {'I', 'J', 'K'};
 
+/// The two axes of a plane in their right-handed order, and the one normal to it: 0 X, 1 Y, 2 Z.
+struct PlaneAxes {
+  std::size_t first, second, third;
+};
+PlaneAxes axes_of(Plane plane) {
+  if (plane == Plane::zx) return {2, 0, 1};
+  if (plane == Plane::yz) return {1, 2, 0};
+  return {0, 1, 2};
+}
+
 Result<Point2> center_from_offsets(const ArcWords& w, PlaneAxes axes, Point2 start) {
-  const auto first = w.center[static_cast<std::size_t>(axes.first)];
-  const auto second = w.center[static_cast<std::size_t>(axes.second)];
-  if (w.center[static_cast<std::size_t>(axes.third)])
-    return syntax(std::string("a ") + kOffset[static_cast<std::size_t>(axes.third)] +
-                  " word with an arc in " + kPlaneName[static_cast<std::size_t>(w.plane)] + " (" +
-                  kOffset[static_cast<std::size_t>(axes.first)] + " and " +
-                  kOffset[static_cast<std::size_t>(axes.second)] + ", or another plane)");
+  const auto first = w.center[axes.first];
+  const auto second = w.center[axes.second];
+  if (w.center[axes.third])
+    return syntax(std::string("a ") + kOffset[axes.third] + " word with an arc in " +
+                  kPlaneName[static_cast<std::size_t>(w.plane)] + " (" + kOffset[axes.first] + " and " +
+                  kOffset[axes.second] + ", or another plane)");
   if (!w.center_absolute) return start + Vec2{first.value_or(0), second.value_or(0)};
   if (!first || !second) return syntax("an absolute arc centre (G90.1) with one word missing (both)");
   return Point2{*first, *second};
@@ -51,19 +61,6 @@ Result<Point2> center_from_radius(const ArcWords& w, Point2 start, Point2 end) {
 }
 
 }  // namespace
-
-PlaneAxes axes_of(Plane plane) {
-  if (plane == Plane::zx) return {2, 0, 1};
-  if (plane == Plane::yz) return {1, 2, 0};
-  return {0, 1, 2};
-}
-
-double component(const geom::Point3& p, int axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-void set_component(geom::Point3& p, int axis, double value) {
-  (axis == 0 ? p.x : axis == 1 ? p.y : p.z) = value;
-}
 
 Result<cl::Arc> make_arc(const ArcWords& w) {
   const PlaneAxes axes = axes_of(w.plane);

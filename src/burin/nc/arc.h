@@ -10,14 +10,6 @@
 
 namespace burin::nc {
 
-/// The two axes of a plane in their right-handed order, and the one normal to it: 0 X, 1 Y, 2 Z.
-struct PlaneAxes {
-  int first, second, third;
-};
-PlaneAxes axes_of(Plane plane);
-double component(const geom::Point3& point, int axis);
-void set_component(geom::Point3& point, int axis, double value);
-
 struct ArcWords {
   geom::Point3 start, end;  ///< mm
   Plane plane = Plane::xy;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 #include "burin/nc/arc.h"
 
 namespace burin::nc {
@@ -107,7 +108,7 @@ Result<void> CurveReader::add(const Block& block, const std::array<const Word*, 
       return source_.error(ErrorCode::range,
                            word_text(*words[i]) + " beyond " + coordinate_limit() + " (less)",
                            place_of(block, *words[i]));
-    set_component(last_, static_cast<int>(i), value);
+    set_component(last_, i, value);
   }
   const double weight = words[kWeight] ? words[kWeight]->value : 1.0;
   if (!(weight >= kMinWeight && weight <= kMaxWeight))

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 #include "burin/kinematics/joint_path.h"
 #include "burin/nc/arc.h"
 #include "burin/nc/place.h"
@@ -349,20 +350,19 @@ Result<void> ModalMachine::high_precision() {
 /// The end of a motion; `lost_` forgets what is commanded again.
 Result<geom::Point3> ModalMachine::target(const std::array<const Word*, 3>& axes, geom::Point3 from) {
   geom::Point3 end = from;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<std::size_t>(axis);
-    const Word* word = axes[i];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Word* word = axes[axis];
     if (!word) continue;
     auto value = length(*word);
     if (!value) return value.error();
     if (state_.incremental && *value == 0) continue;
-    if (state_.incremental && lost_[i])
+    if (state_.incremental && lost_[axis])
       return error(ErrorCode::unsupported, "an increment from the machine's reference position (G90)", word);
     const double to = *value + (state_.incremental ? component(end, axis) : 0.0);
     if (!(std::abs(to) <= kMaxCoordinate_mm))
       return error(ErrorCode::range, "a position beyond " + coordinate_limit() + " (less)", word);
     set_component(end, axis, to);
-    lost_[i] = false;
+    lost_[axis] = false;
   }
   return end;
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 #include "burin/post/nc_writer.h"
 #include "burin/post/round_arc.h"
 #include "burin/post/words.h"
@@ -26,13 +27,6 @@ constexpr double kMaxCenter_mm = 1e9;
 using Grid = std::array<std::int64_t, 3>;
 constexpr std::array<char, 3> kAxis = {'X', 'Y', 'Z'};
 constexpr std::array<char, 3> kCenter = {'I', 'J', 'K'};
-
-double component(const Point3& p, std::size_t axis) {
-  return axis == 0 ? p.x : axis == 1 ? p.y : p.z;
-}
-double component(const Vec3& v, std::size_t axis) {
-  return axis == 0 ? v.x : axis == 1 ? v.y : v.z;
-}
 
 /// A plane of arcs: the code, and its axes in right-handed order with the normal last.
 struct PlaneCode {

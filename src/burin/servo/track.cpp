@@ -8,6 +8,7 @@
 
 #include "burin/base/text.h"
 #include "burin/geom/gauss.h"
+#include "burin/geom/point_tools.h"
 #include "burin/servo/cursor.h"
 
 namespace burin::servo {
@@ -63,12 +64,9 @@ double extent(const Piece& piece) {
   return sum;
 }
 
-bool finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 bool acceptable(const QuinticNode& n) {
   const Vec3 p = n.p - Point3{};
-  return std::isfinite(n.t) && finite(p) && finite(n.d1) && finite(n.d2) &&
+  return std::isfinite(n.t) && is_finite(p) && is_finite(n.d1) && is_finite(n.d2) &&
          std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= kMaxCoordinate;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "burin/geom/point_tools.h"
+
 namespace burin::view {
 namespace {
 
@@ -90,7 +92,7 @@ std::vector<int> iso_lines(const std::vector<Line>& lines) {
 }
 
 geom::Vec3 finite_or_zero(geom::Vec3 n) {
-  return std::isfinite(n.x) && std::isfinite(n.y) && std::isfinite(n.z) ? n : geom::Vec3{};
+  return is_finite(n) ? n : geom::Vec3{};
 }
 
 SurfaceMesh sample(const NurbsSurface& s, int samples, std::size_t share) {

@@ -6,6 +6,7 @@
 
 #include "burin/geom/curve/nurbs.h"
 #include "burin/geom/gauss.h"
+#include "burin/geom/point_tools.h"
 
 namespace burin::geom {
 namespace {
@@ -19,12 +20,6 @@ Overloaded(F...) -> Overloaded<F...>;
 
 bool finite(double v) {
   return std::isfinite(v);
-}
-bool finite(Point2 p) {
-  return finite(p.x) && finite(p.y);
-}
-bool finite(Vec2 v) {
-  return finite(v.x) && finite(v.y);
 }
 
 Error bad(const char* what) {
@@ -87,12 +82,12 @@ double integrate(const F& f, double a, double b, double tolerance, int depth) {
 Result<void> validate(const Curve2& curve) {
   return std::visit(
       Overloaded{[](const Line2& l) -> Result<void> {
-                   if (!finite(l.a) || !finite(l.b))
+                   if (!is_finite(l.a) || !is_finite(l.b))
                      return bad("a line with an end that is not a finite number");
                    return {};
                  },
                  [](const Arc2& a) -> Result<void> {
-                   if (!finite(a.center) || !finite(a.radius) || !finite(a.start) || !finite(a.sweep)) {
+                   if (!is_finite(a.center) || !finite(a.radius) || !finite(a.start) || !finite(a.sweep)) {
                      return bad("an arc with a value that is not a finite number");
                    }
                    if (!(a.radius > 0)) return bad("an arc of radius 0 or less (a positive radius)");
@@ -102,8 +97,8 @@ Result<void> validate(const Curve2& curve) {
                    return {};
                  },
                  [](const EllipseArc2& e) -> Result<void> {
-                   if (!finite(e.center) || !finite(e.major) || !finite(e.minor) || !finite(e.start) ||
-                       !finite(e.sweep)) {
+                   if (!is_finite(e.center) || !is_finite(e.major) || !is_finite(e.minor) ||
+                       !finite(e.start) || !finite(e.sweep)) {
                      return bad("an elliptic arc with a value that is not a finite number");
                    }
                    if (norm(e.major) == 0 && norm(e.minor) == 0) return bad("an elliptic arc without extent");

@@ -94,13 +94,7 @@ class Collector {
   Overlap points_;
 };
 
-}  // namespace
-
-Candidates carriers_meet(const Segment& s, const Segment& t, double eps) {
-  if (s.is_line()) return t.is_line() ? lines_meet(s, t) : line_meets_circle(s, t, eps);
-  return t.is_line() ? line_meets_circle(t, s, eps) : circles_meet(s, t, eps);
-}
-
+/// Whether p is within eps of the segment.
 bool near_segment(const Segment& s, Point2 p, double eps) {
   const double eps2 = eps * eps;
   if (s.is_line()) {
@@ -118,6 +112,13 @@ bool near_segment(const Segment& s, Point2 p, double eps) {
     if (off2 <= hi * hi && (lo <= 0 || off2 >= lo * lo)) return true;
   }
   return distance2(p, s.a) <= eps2 || distance2(p, s.b) <= eps2;
+}
+
+}  // namespace
+
+Candidates carriers_meet(const Segment& s, const Segment& t, double eps) {
+  if (s.is_line()) return t.is_line() ? lines_meet(s, t) : line_meets_circle(s, t, eps);
+  return t.is_line() ? line_meets_circle(t, s, eps) : circles_meet(s, t, eps);
 }
 
 Meeting meet(const Segment& s, const Segment& t, double eps) {

@@ -35,9 +35,6 @@ struct Candidates {
 };
 Candidates carriers_meet(const Segment& s, const Segment& t, double eps);
 
-/// Whether p is within eps of the segment.
-bool near_segment(const Segment& s, Point2 p, double eps);
-
 /// Every crossing deeper than eps is reported, and every end of one segment within eps of the other; each
 /// point reported is within 2 eps of both.
 Meeting meet(const Segment& s, const Segment& t, double eps);

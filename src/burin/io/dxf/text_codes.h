@@ -11,6 +11,4 @@ namespace burin::io::dxf {
 /// is empty, else they become U+FFFD. "\U+XXXX" becomes the character.
 std::string decode_text(std::string_view bytes, std::string_view code_page);
 
-bool is_utf8(std::string_view bytes);
-
 }  // namespace burin::io::dxf

@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "burin/geom/point_tools.h"
+
 namespace burin::io::step {
 
 using geom::Box2;
@@ -256,24 +258,13 @@ double area(const TrimLoop& loop) {
   return 0.5 * twice;
 }
 
-bool inside(const TrimLoop& loop, Point2 q) {
-  bool in = false;
-  const std::vector<Point2>& p = loop.points;
-  for (std::size_t i = 0, j = p.size() - 1; i < p.size(); j = i++) {
-    if ((p[i].y > q.y) != (p[j].y > q.y) &&
-        q.x < p[i].x + (p[j].x - p[i].x) * (q.y - p[i].y) / (p[j].y - p[i].y))
-      in = !in;
-  }
-  return in;
-}
-
 /// How many of `loops` contain the loop, by most of its points (single ones may touch).
 int depth_of(const TrimLoop& loop, const std::vector<TrimLoop>& loops) {
   int depth = 0;
   for (const TrimLoop& other : loops) {
     if (&other == &loop || std::abs(area(other)) <= std::abs(area(loop))) continue;
     std::size_t in = 0;
-    for (const Point2 p : loop.points) in += inside(other, p);
+    for (const Point2 p : loop.points) in += geom::inside_polygon(other.points, p);
     depth += 2 * in > loop.points.size();
   }
   return depth;

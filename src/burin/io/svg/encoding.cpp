@@ -5,28 +5,10 @@
 #include <cstdint>
 
 #include "burin/base/text.h"
+#include "burin/base/utf8.h"
 
 namespace burin::io::svg {
 namespace {
-
-void append_utf8(std::string& out, std::uint32_t c) {
-  const auto put = [&out](std::uint32_t byte) { out.push_back(static_cast<char>(byte)); };
-  if (c < 0x80) {
-    put(c);
-  } else if (c < 0x800) {
-    put(0xC0 | (c >> 6));
-    put(0x80 | (c & 0x3F));
-  } else if (c < 0x10000) {
-    put(0xE0 | (c >> 12));
-    put(0x80 | ((c >> 6) & 0x3F));
-    put(0x80 | (c & 0x3F));
-  } else {
-    put(0xF0 | (c >> 18));
-    put(0x80 | ((c >> 12) & 0x3F));
-    put(0x80 | ((c >> 6) & 0x3F));
-    put(0x80 | (c & 0x3F));
-  }
-}
 
 std::string from_latin1(std::string_view bytes) {
   std::string out;
@@ -36,7 +18,6 @@ std::string from_latin1(std::string_view bytes) {
 }
 
 std::string from_utf16(std::string_view bytes, bool big_endian) {
-  constexpr std::uint32_t kReplacement = 0xFFFD;
   const auto unit_at = [&](std::size_t i) {
     const auto a = static_cast<unsigned char>(bytes[i]), b = static_cast<unsigned char>(bytes[i + 1]);
     return static_cast<std::uint32_t>(big_endian ? (a << 8) | b : (b << 8) | a);
@@ -52,7 +33,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
         i += 2;
       }
     }
-    append_utf8(out, c >= 0xD800 && c < 0xE000 ? kReplacement : c);
+    append_utf8(out, c);  // half a pair becomes U+FFFD
   }
   return out;
 }
@@ -72,28 +53,6 @@ int line_of(std::string_view text, std::size_t offset) {
 
 }  // namespace
 
-bool is_valid_utf8(std::string_view text) {
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    const std::size_t more = lead < 0x80   ? 0
-                             : lead < 0xC2 ? 9
-                             : lead < 0xE0 ? 1
-                             : lead < 0xF0 ? 2
-                             : lead < 0xF5 ? 3
-                                           : 9;
-    if (more == 9 || i + more >= text.size() + (more == 0 ? 1 : 0)) return false;
-    for (std::size_t k = 1; k <= more; ++k) {
-      const auto next = static_cast<unsigned char>(text[i + k]);
-      const unsigned lo = k == 1 && lead == 0xE0 ? 0xA0 : k == 1 && lead == 0xF0 ? 0x90 : 0x80;
-      const unsigned hi = k == 1 && lead == 0xED ? 0x9F : k == 1 && lead == 0xF4 ? 0x8F : 0xBF;
-      if (next < lo || next > hi) return false;
-    }
-    i += more + 1;
-  }
-  return true;
-}
-
 Result<std::string> to_utf8(std::string_view bytes) {
   if (bytes.starts_with("\x1F\x8B")) {
     return Error{ErrorCode::unsupported,
@@ -108,7 +67,7 @@ Result<std::string> to_utf8(std::string_view bytes) {
     text = from_utf16(bytes, bytes[0] == '\0');
   } else {
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
-    text = declares_latin1(bytes) || !is_valid_utf8(bytes) ? from_latin1(bytes) : std::string(bytes);
+    text = declares_latin1(bytes) || !is_utf8(bytes) ? from_latin1(bytes) : std::string(bytes);
   }
   if (const std::size_t nul = text.find('\0'); nul != std::string::npos) {
     return Error{ErrorCode::syntax,

@@ -14,6 +14,4 @@ namespace burin::io::svg {
 /// NUL bytes).
 Result<std::string> to_utf8(std::string_view bytes);
 
-bool is_valid_utf8(std::string_view text);
-
 }  // namespace burin::io::svg

@@ -9,6 +9,7 @@
 
 #include "burin/base/parallel.h"
 #include "burin/base/text.h"
+#include "burin/geom/point_tools.h"
 #include "burin/plan/cycle/cycle.h"
 #include "burin/plan/cycle/estimate.h"
 #include "burin/plan/cycle/extend.h"
@@ -45,8 +46,7 @@ Result<void> check(const geom::Composite& composite, Point3 start, const PlanOpt
   if (!(o.path_mm > 0 && finite(o.path_mm))) return usage("path_mm must be positive (mm, e.g. 1e-6)");
   if (o.max_paths == 0) return usage("at least one path must be allowed (max_paths > 0)");
   if (!finite(o.safety_z)) return usage("the safety height W must be a number (mm)");
-  if (!(finite(start.x) && finite(start.y) && finite(start.z)))
-    return usage("the start must be a point (three numbers, mm)");
+  if (!is_finite(start)) return usage("the start must be a point (three numbers, mm)");
   return {};
 }
 

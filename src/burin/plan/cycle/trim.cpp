@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/point_tools.h"
+
 namespace burin::cycle {
 namespace {
 
@@ -21,24 +23,12 @@ std::vector<Point2> mapped(const geom::Member& m, const std::vector<Point2>& poi
 
 bool even_odd(const std::vector<std::vector<Point2>>& loops, Point2 p) {
   bool in = false;
-  for (const auto& loop : loops)
-    for (std::size_t i = 0, j = loop.size() - 1; i < loop.size(); j = i++) {
-      const Point2 a = loop[i], b = loop[j];
-      if ((a.y > p.y) == (b.y > p.y)) continue;
-      if (p.x < (b.x - a.x) * (p.y - a.y) / (b.y - a.y) + a.x) in = !in;
-    }
+  for (const auto& loop : loops) in ^= geom::inside_polygon(loop, p);
   return in;
 }
 
 bool holds(Interval u, Interval v, Point2 p) {
   return p.x >= u.lo && p.x <= u.hi && p.y >= v.lo && p.y <= v.hi;
-}
-
-double distance_to_segment(Point2 p, Point2 a, Point2 b) {
-  const geom::Vec2 d = b - a;
-  const double l2 = norm2(d);
-  const double s = l2 > 0 ? std::clamp(dot(p - a, d) / l2, 0.0, 1.0) : 0;
-  return distance(p, a + s * d);
 }
 
 }  // namespace
