@@ -30,6 +30,7 @@ struct OrientJobFile {
   std::variant<OrientSurface, OrientMesh, model::PropellerData> part;
   std::vector<std::string> obstacles;
   std::string contacts;  ///< "": generated
+  bool flip = false;     ///< the tool stands on the other side of the design's faces
   model::Mill mill;
   orient::OrientOptions options;
   std::string machine = "none";
