@@ -23,9 +23,9 @@
 namespace burin::cli {
 namespace {
 
-constexpr int kAsk = 1, kTake = 2;         ///< tags: a rank wants a task; its number, or kNoMore
+constexpr int kAsk = 1, kTake = 2;  ///< tags: a rank wants a task; its number, or kNoMore
 constexpr std::uint64_t kNoMore = ~0ull;
-constexpr std::size_t kChunk = 1u << 30;   ///< bytes in one message: MPI counts in int
+constexpr std::size_t kChunk = 1u << 30;                 ///< bytes in one message: MPI counts in int
 constexpr auto kPause = std::chrono::microseconds(100);  ///< between two looks for messages
 
 // --- bytes
@@ -164,7 +164,7 @@ class MpiWorkers final : public Workers {
   std::vector<std::string> map(std::size_t count, const Task& body) override {
     std::vector<Done> mine;
     {
-      Crew crew(std::min<std::size_t>(threads_, std::max<std::size_t>(count, 1)), body);
+      Crew crew(static_cast<unsigned>(std::clamp<std::size_t>(count, 1, threads_)), body);
       rank_ == 0 ? share_out(count, crew) : take_part(crew);
       mine = crew.results();
     }

@@ -19,6 +19,7 @@ constexpr double kMaxLength = 1e4;  ///< mm: tools, steps and heights beyond 10 
 constexpr double kSmallest = 1e-4;  ///< mm: lengths below are slips too
 constexpr std::size_t kMostFiles = 1000;
 constexpr std::size_t kMostFaces = 100'000;
+constexpr double kMaxTilt = 89;  ///< degrees: beyond, a mill lies on its side
 constexpr int kMostPaths = 100'000;
 
 bool has(const toml::table& table, std::string_view key) {
@@ -106,12 +107,12 @@ model::PropellerData read_propeller(TomlReader& reader, const toml::table& table
   model::PropellerData p;
   const toml::table* inner = node.as_table();
   if (inner == nullptr) {
-    reader.fail(node, "\"propeller\" is not a table ({ blades = 5, diameter = 1000.0, pitch_ratio = 1.0, "
-                      "area_ratio = 0.75, hub_ratio = 0.18, side = \"face\" })");
+    reader.fail(node,
+                "\"propeller\" is not a table ({ blades = 5, diameter = 1000.0, pitch_ratio = 1.0, "
+                "area_ratio = 0.75, hub_ratio = 0.18, side = \"face\" })");
     return p;
   }
-  reader.only_keys(*inner,
-                   {"blades", "diameter", "pitch_ratio", "area_ratio", "hub_ratio", "rake", "side"});
+  reader.only_keys(*inner, {"blades", "diameter", "pitch_ratio", "area_ratio", "hub_ratio", "rake", "side"});
   // What the series covers is the propeller's own check; here only slips of the keyboard.
   p.blades = whole(reader, *inner, "blades", 1, 100, p.blades);
   p.diameter = reader.number(*inner, "diameter", kSmallest, 1e5, p.diameter);
@@ -146,10 +147,13 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
   }
   none_of(reader, table, {"faces"}, "without \"surface\" (it selects faces of a STEP or IGES file)");
   if (kind == "propeller") {
+    none_of(reader, table, {"flip"},
+            "beside \"propeller\" (propeller = { side = \"back\" } is its other side)");
     job.part = read_propeller(reader, table);
     return;
   }
   if (kind == "mesh") {
+    none_of(reader, table, {"flip"}, "beside \"mesh\" (the normals of \"contacts\" say the side)");
     job.part = OrientMesh{file(reader, table, "mesh")};
     if (!has(table, "contacts"))
       reader.fail(*table.get("mesh"),
@@ -189,8 +193,9 @@ model::Mill read_tool(TomlReader& reader, const toml::table& table) {
 // --- [operation]
 
 const std::vector<std::string> kOperationKeys = {
-    "paths",  "plane_normal", "tilt", "yaw",       "tolerance",  "clearance",  "objective", "search", "smooth",
-    "scallop", "feed",        "spindle", "side_step", "path_count", "sturz_tilt", "max_step",  "edge",   "safety"};
+    "paths",     "plane_normal", "tilt",       "yaw",      "tolerance", "clearance",
+    "objective", "search",       "smooth",     "scallop",  "feed",      "spindle",
+    "side_step", "path_count",   "sturz_tilt", "max_step", "edge",      "safety"};
 
 void read_paths(TomlReader& reader, const toml::table& table, bool contacts, orient::OrientOptions& o) {
   orient::PathOptions& paths = o.paths;
@@ -213,7 +218,8 @@ void read_paths(TomlReader& reader, const toml::table& table, bool contacts, ori
     if (length > 0) paths.plane_normal = {n[0] / length, n[1] / length, n[2] / length};
   }
   if (has(table, "side_step")) o.side_step_mm = reader.number(table, "side_step", kSmallest, kMaxLength);
-  if (has(table, "path_count")) o.path_count = whole(reader, table, "path_count", 1, kMostPaths, std::nullopt);
+  if (has(table, "path_count"))
+    o.path_count = whole(reader, table, "path_count", 1, kMostPaths, std::nullopt);
   if (o.side_step_mm && o.path_count)
     reader.fail(*table.get("path_count"), "\"path_count\" beside \"side_step\" (one or the other)");
   if (has(table, "max_step")) paths.max_step_mm = reader.number(table, "max_step", kSmallest, kMaxLength);
@@ -223,10 +229,9 @@ void read_paths(TomlReader& reader, const toml::table& table, bool contacts, ori
 orient::OrientOptions read_operation(TomlReader& reader, const toml::table& table, bool contacts) {
   reader.only_keys(table, kOperationKeys);
   orient::OrientOptions o;
-  const auto tilt = reader.range(table, "tilt", 0, 90,
-                                 {degrees(o.range.alpha_lo), degrees(o.range.alpha_hi)});
-  const auto yaw =
-      reader.range(table, "yaw", -90, 90, {degrees(o.range.beta_lo), degrees(o.range.beta_hi)});
+  const auto tilt =
+      reader.range(table, "tilt", 0, kMaxTilt, {degrees(o.range.alpha_lo), degrees(o.range.alpha_hi)});
+  const auto yaw = reader.range(table, "yaw", -90, 90, {degrees(o.range.beta_lo), degrees(o.range.beta_hi)});
   o.range = {radians(tilt.first), radians(tilt.second), radians(yaw.first), radians(yaw.second)};
   o.tolerance_mm = reader.number(table, "tolerance", 1e-5, 10, o.tolerance_mm);
   o.clearance_mm = reader.number(table, "clearance", 0, 1e3, o.clearance_mm);
@@ -243,7 +248,7 @@ orient::OrientOptions read_operation(TomlReader& reader, const toml::table& tabl
   o.feed_mm_min = reader.number(table, "feed", 1e-3, 1e6, o.feed_mm_min);
   o.spindle_rpm = reader.number(table, "spindle", 0, 1e6, o.spindle_rpm);
   o.safety_mm = reader.number(table, "safety", 1e-3, kMaxLength, o.safety_mm);
-  if (has(table, "sturz_tilt")) o.sturz_tilt = radians(reader.number(table, "sturz_tilt", 0, 90));
+  if (has(table, "sturz_tilt")) o.sturz_tilt = radians(reader.number(table, "sturz_tilt", 0, kMaxTilt));
   if (o.search == orient::Search::contour && o.objective == orient::Objective::strip)
     reader.fail(*table.get("search"),
                 "search = \"contour\" with objective = \"strip\" (the paper's procedure follows contours of "

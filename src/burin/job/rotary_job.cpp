@@ -143,10 +143,10 @@ rotary::RotaryOptions read_operation(TomlReader& reader, const toml::table& tabl
                            "lean_angle", "smooth", "feed", "safety", "spindle"});
   rotary::RotaryOptions o;
   o.pattern = reader.choice<rotary::Pattern>(table, "pattern",
-                                      {{"rings", rotary::Pattern::rings},
-                                       {"spiral", rotary::Pattern::spiral},
-                                       {"lines", rotary::Pattern::lines}},
-                                      o.pattern);
+                                             {{"rings", rotary::Pattern::rings},
+                                              {"spiral", rotary::Pattern::spiral},
+                                              {"lines", rotary::Pattern::lines}},
+                                             o.pattern);
   o.tolerance_mm = reader.number(table, "tolerance", 1e-4, 10, o.tolerance_mm);
   o.scallop = reader.number(table, "scallop", 1e-6, 1e3, o.scallop);
   if (const toml::node* node = table.get("side_step")) {
@@ -154,9 +154,9 @@ rotary::RotaryOptions read_operation(TomlReader& reader, const toml::table& tabl
     o.side_step = reader.number(table, "side_step", kSmallest, kMaxLength);
   }
   o.tsi = reader.choice<rotary::Tsi>(table, "tsi",
-                              {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}}, o.tsi);
-  o.tai = reader.choice<rotary::Tai>(table, "tai",
-                              {{"exact", rotary::Tai::exact}, {"section", rotary::Tai::section}}, o.tai);
+                                     {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}}, o.tsi);
+  o.tai = reader.choice<rotary::Tai>(
+      table, "tai", {{"exact", rotary::Tai::exact}, {"section", rotary::Tai::section}}, o.tai);
   o.clearance = radians(reader.number(table, "clearance_angle", 0, 90, geom::degrees(o.clearance)));
   o.lean = radians(reader.number(table, "lean_angle", 0, 90, geom::degrees(o.lean)));
   o.smooth = reader.flag(table, "smooth", o.smooth);

@@ -145,8 +145,8 @@ std::pair<double, double> TomlReader::range(const toml::table& table, std::strin
   const toml::node* node = table.get(key);
   if (node == nullptr) return fallback;
   const std::string name = "\"" + std::string(key) + "\"";
-  const std::string accepted = " ([lo, hi], both from " + format_shortest(min) + " to " +
-                               format_shortest(max) + ", lo not above hi)";
+  const std::string accepted =
+      " ([lo, hi], both from " + format_shortest(min) + " to " + format_shortest(max) + ", lo not above hi)";
   const toml::array* array = node->as_array();
   if (array == nullptr || array->size() != 2) {
     fail(*node, name + " is not a range" + accepted);
@@ -157,7 +157,8 @@ std::pair<double, double> TomlReader::range(const toml::table& table, std::strin
     const toml::node& entry = *array->get(i);
     ends[i] = entry.is_number() ? *entry.value<double>() : std::nan("");
     if (ends[i] >= min && ends[i] <= max) continue;
-    fail(entry, name + (entry.is_number() ? " is out of range" : " holds something that is no number") + accepted);
+    fail(entry,
+         name + (entry.is_number() ? " is out of range" : " holds something that is no number") + accepted);
     return fallback;
   }
   if (ends[0] > ends[1]) {
