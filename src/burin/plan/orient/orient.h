@@ -58,12 +58,15 @@ struct OrientedPath {
   double smooth_loss = 0, speed_share = 0, acceleration_share = 0;
 };
 
-/// Another way to mill the same faces at the same scallop.
+/// Another way to mill the same faces at the same scallop: one tilt for all at yaw 0 ("sturz"; the least tilt
+/// that suits every point, else the one that suits most), or a ball-end mill of the same radius ("ball"; a
+/// smaller one where the faces are bent more). Side steps follow the strips as in the plan.
 struct Comparison {
-  std::string name;  ///< "sturz", "ball"
-  bool possible = false;
-  double tilt = 0;  ///< sturz
+  std::string name;
+  bool possible = false;  ///< false: contacts came from a file, there is nothing to lay out
+  double tilt = 0;        ///< sturz
   double radius_mm = 0;
+  std::size_t unreachable = 0;  ///< sturz: contact points that the tilt does not suit
   std::size_t paths = 0;
   double cut_mm = 0;
   double minutes = 0;  ///< at the feed
@@ -86,8 +89,6 @@ Result<OrientPlan> plan(const Part& part, const model::Mill& mill, const std::ve
                         const kinematics::Kinematics* machine, const OrientOptions& options, Workers& workers,
                         Diagnostics& diagnostics, ProgressSink* progress);
 
-/// The contact points alone, as plan() takes them when every path has `path_count` or `side_step_mm`, else
-/// with its angles found: for `burin cspace`.
 Setting setting_of(const Scene& scene, const MachineLimits& limits, const OrientOptions& options);
 
 }  // namespace burin::orient

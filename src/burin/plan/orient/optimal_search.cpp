@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Best first: the most promising yaw of an upper bound is asked, what stands in the way there lowers the
+// bound.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "burin/plan/orient/envelope.h"
+#include "burin/plan/orient/initial.h"
+
+namespace burin::orient {
+namespace {
+
+// Yaws asked at one contact point before the best found is taken.
+constexpr int kMostAsked = 300;
+// Places looked for between the end of what one blocks and the first free tilt of a yaw.
+constexpr int kMostBridges = 3;
+// What the next contact point gets.
+constexpr std::size_t kKeptWitnesses = 40;
+// rad: a bound that is nearer to the truth than this needs no further places.
+constexpr double kTight = 1e-7;
+
+class OptimalSearch {
+ public:
+  OptimalSearch(const Setting& setting, const Goal& goal, const CcPoint& at, Scene::Memory& memory,
+                Relaxation& known)
+      : setting_(setting), goal_(goal), at_(at), memory_(memory), known_(known) {}
+
+  void run(Optimum& best) {
+    Envelope envelope(setting_, goal_, at_, known_);
+    for (int asked = 0; asked < kMostAsked; ++asked) {
+      const double found = best.found ? best.value : Envelope::kNever;
+      envelope.refine(found);
+      const auto top = envelope.top();
+      if (!top) break;
+      const double bound = envelope.node(*top).value;
+      if (best.found && !(best.value < (1 - kOptimumShare) * bound)) break;
+      ask(envelope, *top, best);
+    }
+    if (!best.found) best.cause = most();
+  }
+
+ private:
+  void count(Cause cause) { ++causes_[static_cast<std::size_t>(cause)]; }
+  Cause most() const {
+    const auto most = std::max_element(causes_.begin(), causes_.end());
+    return *most > 0 ? static_cast<Cause>(most - causes_.begin()) : Cause::none;
+  }
+
+  void ask(Envelope& envelope, std::size_t i, Optimum& best) {
+    const double beta = envelope.node(i).beta, from = envelope.node(i).alpha;
+    if (beyond_limits(envelope, i)) return;
+    const Scene::FirstFree free = first_allowed(setting_, at_, beta, from, memory_);
+    if (free.found) {
+      const double value = goal_.value(at_, {free.alpha, beta});
+      if (!best.found || value > best.value) {
+        best.found = true;
+        best.angles = {free.alpha, beta};
+        best.value = value;
+        best.cause = free.cause;
+      }
+      envelope.raise(i, free.alpha, true);
+    } else {
+      count(free.cause);
+      envelope.exclude(i);
+    }
+    const double found = best.found ? best.value : Envelope::kNever;
+    if (free.witness && known_.add(*free.witness)) envelope.learn(found);
+    bridge(envelope, beta, from, free.alpha, found);
+  }
+
+  /// The machine is asked first: it costs no test.
+  bool beyond_limits(Envelope& envelope, std::size_t i) {
+    if (setting_.limits->unlimited()) return false;
+    const double beta = envelope.node(i).beta, from = envelope.node(i).alpha, to = setting_.range.alpha_hi;
+    const double kept = first_within(setting_, at_, beta, from, to);
+    if (kept == from) return false;
+    const double alpha = kept > to ? kept : known_.first_tilt(beta, kept, to);
+    if (alpha > to) {
+      count(Cause::limit);
+      envelope.exclude(i);
+    } else {
+      envelope.raise(i, alpha, false);
+    }
+    return true;
+  }
+
+  /// The walk to the first free tilt names the last place only; neighbouring yaws need those before it too.
+  void bridge(Envelope& envelope, double beta, double from, double until, double found) {
+    for (int k = 0; k < kMostBridges; ++k) {
+      const double reached = known_.first_tilt(beta, from, setting_.range.alpha_hi);
+      if (reached >= until - kTight) return;
+      const Scene::FirstFree here = setting_.scene->first_free(at_, beta, reached, reached, memory_);
+      if (here.found || !here.witness || !known_.add(*here.witness)) return;
+      envelope.learn(found);
+    }
+  }
+
+  const Setting& setting_;
+  const Goal& goal_;
+  const CcPoint& at_;
+  Scene::Memory& memory_;
+  Relaxation& known_;
+  std::array<int, 5> causes_{};
+};
+
+void keep(const Relaxation& known, std::size_t inherited, const Optimum& best, Experience& experience) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = inherited; i < known.size(); ++i) order.push_back(i);
+  std::vector<std::size_t> old;
+  for (std::size_t i = 0; i < inherited; ++i)
+    if (known.uses(i) > 0) old.push_back(i);
+  std::stable_sort(old.begin(), old.end(),
+                   [&](std::size_t a, std::size_t b) { return known.uses(a) > known.uses(b); });
+  order.insert(order.end(), old.begin(), old.end());
+  if (order.size() > kKeptWitnesses) order.resize(kKeptWitnesses);
+  std::vector<Witness> kept;
+  for (const std::size_t i : order) kept.push_back(known.witness(i));
+  experience.witnesses = std::move(kept);
+  experience.has_angles = best.found;
+  if (best.found) experience.angles = best.angles;
+}
+
+}  // namespace
+
+Optimum find_optimal(const Setting& setting, const Goal& goal, const CcPoint& at, Scene::Memory& memory,
+                     Experience& experience) {
+  const std::uint64_t before = memory.tests;
+  Relaxation known(*setting.scene, at);
+  for (const Witness& witness : experience.witnesses) known.add(witness);
+  const std::size_t inherited = known.size();
+
+  Optimum best;
+  const Initial initial = initial_solution(setting, at, known, memory);
+  best.found = best.initial_found = initial.found;
+  best.cause = initial.cause;
+  if (initial.found) {
+    best.angles = best.initial = initial.angles;
+    best.value = best.initial_value = goal.value(at, initial.angles);
+  }
+  if (!initial.at_corner) {
+    OptimalSearch(setting, goal, at, memory, known).run(best);
+    if (best.found && (best.cause == Cause::none || best.angles == best.initial))
+      best.cause = cause_beyond(setting, at, best.angles, known, memory);
+  }
+  keep(known, inherited, best, experience);
+  best.tests = static_cast<std::uint32_t>(memory.tests - before);
+  return best;
+}
+
+}  // namespace burin::orient
