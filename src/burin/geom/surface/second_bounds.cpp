@@ -2,9 +2,8 @@
 #include "burin/geom/surface/second_bounds.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <tuple>
+#include <optional>
 #include <utility>
 
 #include "burin/geom/surface/rational.h"
@@ -12,9 +11,12 @@
 namespace burin::geom::detail {
 namespace {
 
-/// Halving ends when it gains less than this on every bound, or after kDepth times.
-constexpr double kGain = 0.9;
-constexpr int kDepth = 4;
+/// Parts are halved until the bounds are within this of what the surface really has at the corners of parts
+/// (a fifth more makes a tenth more lines), or until there have been so many.
+constexpr double kGoodEnough = 1.2;
+constexpr int kMostHalvings = 80;
+/// A derivative that takes less than this share of the deviation need not be known well.
+constexpr double kSmallPart = 0.02;
 
 /// (p + 1) x (q + 1) homogeneous points over a rectangle of du x dv.
 struct Net {
@@ -102,26 +104,65 @@ std::pair<Net, Net> halved(const Net& net, Direction d) {
   return {std::move(lo), std::move(hi)};
 }
 
+/// A part of the piece: what is proven of it, and what it has at two of its corners.
+struct Leaf {
+  Net net;
+  SecondBounds bound, seen;
+};
+constexpr double SecondBounds::*kSeconds[] = {&SecondBounds::uu, &SecondBounds::uv, &SecondBounds::vv};
+constexpr double SecondBounds::*kAll[] = {&SecondBounds::u, &SecondBounds::v, &SecondBounds::uu,
+                                          &SecondBounds::uv, &SecondBounds::vv};
+
 void keep_larger(SecondBounds& a, const SecondBounds& b) {
-  a = {std::max(a.u, b.u), std::max(a.v, b.v), std::max(a.uu, b.uu), std::max(a.uv, b.uv), std::max(a.vv, b.vv)};
+  for (const auto member : kAll) a.*member = std::max(a.*member, b.*member);
 }
 
-SecondBounds bounds_of(const Net& net, const SecondBounds& whole, int depth) {
-  if (depth == 0) return whole;
-  auto [left, right] = halved(net, Direction::u);
-  std::array<Net, 4> parts;
-  std::tie(parts[0], parts[1]) = halved(left, Direction::v);
-  std::tie(parts[2], parts[3]) = halved(right, Direction::v);
-  std::array<SecondBounds, 4> each;
-  SecondBounds most;
-  for (std::size_t k = 0; k < 4; ++k) keep_larger(most, each[k] = bounds_once(parts[k]));
-  const bool gained = most.uu < kGain * whole.uu || most.uv < kGain * whole.uv || most.vv < kGain * whole.vv;
-  if (gained) {
-    most = {};
-    for (std::size_t k = 0; k < 4; ++k) keep_larger(most, bounds_of(parts[k], each[k], depth - 1));
+/// Magnitudes at the corner (i, j), each 0 or 1.
+SecondBounds at_corner(const Net& net, int i, int j) {
+  // Differences towards the inside, turned into derivatives; degrees below two have no second ones.
+  const auto point = [&](int a, int b) { return net.at(i == 0 ? a : net.p - a, j == 0 ? b : net.q - b); };
+  const double su = (i == 0 ? 1 : -1) / net.du, sv = (j == 0 ? 1 : -1) / net.dv;
+  const HPoint none{0, 0, 0, 0};
+  HSurface a{};
+  a.p = point(0, 0);
+  a.u = (net.p * su) * (point(1, 0) - a.p);
+  a.v = (net.q * sv) * (point(0, 1) - a.p);
+  a.uu = net.p < 2 ? none : (net.p * (net.p - 1) * su * su) * (point(2, 0) - 2 * point(1, 0) + a.p);
+  a.vv = net.q < 2 ? none : (net.q * (net.q - 1) * sv * sv) * (point(0, 2) - 2 * point(0, 1) + a.p);
+  a.uv = (net.p * net.q * su * sv) * (point(1, 1) - point(1, 0) - point(0, 1) + a.p);
+  SurfaceDerivatives d;
+  rational2(a, d);
+  return {norm(d.du), norm(d.dv), norm(d.duu), norm(d.duv), norm(d.dvv)};
+}
+
+Leaf leaf(Net net) {
+  Leaf out{std::move(net), {}, {}};
+  out.bound = bounds_once(out.net);
+  out.seen = at_corner(out.net, 0, 0);
+  keep_larger(out.seen, at_corner(out.net, 1, 1));
+  return out;
+}
+
+/// The leaf that keeps the bounds up most, or none when they are good enough.
+std::optional<std::size_t> worst_leaf(const std::vector<Leaf>& leaves, const Net& whole) {
+  SecondBounds bound, seen;
+  for (const Leaf& l : leaves) keep_larger(bound, l.bound), keep_larger(seen, l.seen);
+  // What each contributes to the deviation of one cell: parts that hardly matter may be loose.
+  const double size[] = {whole.du * whole.du, whole.du * whole.dv, whole.dv * whole.dv};
+  const double all = bound.uu * size[0] + bound.uv * size[1] + bound.vv * size[2];
+  double most = kGoodEnough;
+  double SecondBounds::*which = nullptr;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double b = bound.*kSeconds[k], s = seen.*kSeconds[k];
+    if (b * size[k] <= kSmallPart * all || b <= most * s) continue;
+    which = kSeconds[k];
+    if (s > 0) most = b / s;
   }
-  return {std::min(most.u, whole.u), std::min(most.v, whole.v), std::min(most.uu, whole.uu),
-          std::min(most.uv, whole.uv), std::min(most.vv, whole.vv)};
+  if (which == nullptr) return std::nullopt;
+  std::size_t at = 0;
+  for (std::size_t i = 1; i < leaves.size(); ++i)
+    if (leaves[i].bound.*which > leaves[at].bound.*which) at = i;
+  return at;
 }
 
 }  // namespace
@@ -129,7 +170,21 @@ SecondBounds bounds_of(const Net& net, const SecondBounds& whole, int depth) {
 SecondBounds second_bounds(const BezierPatch& patch) {
   const Net net{patch.surface.degree_u, patch.surface.degree_v, patch.u.length(), patch.v.length(),
                 patch.surface.points};
-  return bounds_of(net, bounds_once(net), kDepth);
+  std::vector<Leaf> leaves{leaf(net)};
+  const SecondBounds whole = leaves.front().bound;
+  for (int k = 0; k < kMostHalvings; ++k) {
+    const auto at = worst_leaf(leaves, net);
+    if (!at) break;
+    const auto [left, right] = halved(leaves[*at].net, Direction::u);
+    auto [a, b] = halved(left, Direction::v);
+    auto [c, d] = halved(right, Direction::v);
+    leaves[*at] = leaf(std::move(a));
+    for (Net* part : {&b, &c, &d}) leaves.push_back(leaf(std::move(*part)));
+  }
+  SecondBounds most;
+  for (const Leaf& l : leaves) keep_larger(most, l.bound);
+  for (const auto member : kAll) most.*member = std::min(most.*member, whole.*member);
+  return most;
 }
 
 }  // namespace burin::geom::detail
