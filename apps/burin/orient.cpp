@@ -127,11 +127,12 @@ std::string advice(const OrientSetup& setup, const orient::OrientPlan& plan) {
   const std::size_t most = std::max({gouge, collision, limit});
   if (most == gouge && !setup.contacts.empty())
     return "the cutting body gouges everywhere: do the normals of the contacts point away from the part?";
-  if (most == gouge && std::holds_alternative<job::OrientSurface>(setup.file.part))
+  const auto* surface = std::get_if<job::OrientSurface>(&setup.file.part);
+  if (most == gouge && surface != nullptr)
     return std::string(
                "the cutting body gouges everywhere: the tool probably stands on the wrong side "
                "(flip = ") +
-           (setup.file.flip ? "false" : "true") + " in [part])";
+           (surface->flip ? "false" : "true") + " in [part])";
   if (most == gouge) return "the cutting body gouges everywhere (a smaller radius or a larger tilt)";
   if (most == collision)
     return "shank, holder or head collide everywhere (a longer cutting body, a slimmer holder, a larger "

@@ -138,11 +138,11 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
     kind = key;
   }
   if (kind.empty()) reader.fail(table, "[part] has no design surface (surface, mesh or propeller)");
-  job.flip = reader.flag(table, "flip", false);
+  const bool flip = reader.flag(table, "flip", false);
   job.obstacles = files(reader, table, "obstacles");
   if (has(table, "contacts")) job.contacts = file(reader, table, "contacts");
   if (kind == "surface") {
-    job.part = OrientSurface{file(reader, table, "surface"), read_faces(reader, table)};
+    job.part = OrientSurface{file(reader, table, "surface"), read_faces(reader, table), flip};
     return;
   }
   none_of(reader, table, {"faces"}, "without \"surface\" (it selects faces of a STEP or IGES file)");
@@ -153,8 +153,7 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
     return;
   }
   if (kind == "mesh") {
-    none_of(reader, table, {"flip"}, "beside \"mesh\" (the normals of \"contacts\" say the side)");
-    job.part = OrientMesh{file(reader, table, "mesh")};
+    job.part = OrientMesh{file(reader, table, "mesh"), flip};
     if (!has(table, "contacts"))
       reader.fail(*table.get("mesh"),
                   "\"mesh\" without \"contacts\": triangles have no paths of their own (contacts = "
