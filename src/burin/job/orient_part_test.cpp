@@ -66,7 +66,8 @@ TEST(OrientPart, ErrorsNameTheFile) {
   job.part = OrientMesh{"box.stl"};
   job.obstacles = {"other.stl"};
   const std::string box = io::write_stl(geom::cases::box({0, 0, 0}, {10, 10, 10}));
-  const auto other = load_orient_part(job, "", files({{"box.stl", box}, {"other.stl", "rubbish"}}), diagnostics);
+  const auto other =
+      load_orient_part(job, "", files({{"box.stl", box}, {"other.stl", "rubbish"}}), diagnostics);
   ASSERT_FALSE(other.ok());
   EXPECT_EQ(other.error().where.file, "other.stl");
 }

@@ -24,8 +24,8 @@ constexpr int kStations = 33;         ///< sections of a blade
 constexpr double kEdgeShare = 0.1;    ///< edge thickness over the greatest thickness of the section
 /// Handles of the cubic that rounds an edge, over the edge's thickness: those of a half circle.
 constexpr double kRound = 2.0 / 3;
-constexpr double kHubMargin = 1.1;    ///< height of the hub over what the blade's root needs
-constexpr double kBladeGap = 1.02;    ///< distance of neighbouring blades at the hub over their thickness
+constexpr double kHubMargin = 1.1;  ///< height of the hub over what the blade's root needs
+constexpr double kBladeGap = 1.02;  ///< distance of neighbouring blades at the hub over their thickness
 
 struct Range {
   double lo, hi;
@@ -122,7 +122,8 @@ Result<NurbsSurface> rounded_edge(const NurbsSurface& from, const NurbsSurface& 
   for (const double at : v) {
     const auto a = geom::derivatives(from, u, at), b = geom::derivatives(to, u, at);
     const double handle = kRound * geom::distance(a.p, b.p);
-    const Point3 p1 = a.p + outward * handle * geom::unit(a.du), p2 = b.p + outward * handle * geom::unit(b.du);
+    const Point3 p1 = a.p + outward * handle * geom::unit(a.du),
+                 p2 = b.p + outward * handle * geom::unit(b.du);
     for (const double t : s) {
       const double m = 1 - t;
       grid.points.push_back(Point3{} + (m * m * m * (a.p - Point3{}) + 3 * m * m * t * (p1 - Point3{}) +
