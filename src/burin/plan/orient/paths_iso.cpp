@@ -112,7 +112,7 @@ Result<void> IsoFamily::prepare() {
   if (!(s.length() > 0)) return nothing;
   const int spans =
       static_cast<int>(
-          inner_knots(face_.surface().knots(other(along_)), face_.surface().degree(other(along_))).size()) +
+          geom::inner_knots(face_.surface().knots(other(along_)), face_.surface().degree(other(along_))).size()) +
       1;
   const std::vector<double> levels =
       span_places(face_.surface().knots(other(along_)), s, std::max(1, kLevels / std::min(spans, kLevels)));
