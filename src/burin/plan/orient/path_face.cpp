@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "burin/geom/point_tools.h"
 
@@ -218,8 +219,9 @@ bool has_length(const std::vector<CcPoint>& points, double size) {
 
 namespace {
 
-/// Nodes are put in for this share of the chord and turn allowed, so that leaving out finds good places.
-constexpr double kDense = 0.4, kSparse = 0.9;
+/// Nodes are put in for these shares of the chord and of the turn allowed (the spacing is then a third of
+/// what is allowed), so that leaving out finds good places.
+constexpr double kDenseChord = 0.1, kDenseTurn = 0.15, kSparse = 0.9;
 constexpr std::size_t kMostNodes = 400'000;
 constexpr int kMostHalvings = 20;
 
@@ -235,8 +237,8 @@ void refine(const Node& a, const Node& b, const Between& between, const PathOpti
   if (distance(a.cc.c, b.cc.c) <= kLeastStep * o.chord_mm) return;
   const std::optional<Node> m = between(a, b);
   if (!m) return;
-  const double turn = cosine_turn(kDense * o.max_turn);
-  const bool fine = geom::distance_to_segment(m->cc.c, a.cc.c, b.cc.c) <= kDense * o.chord_mm &&
+  const double turn = cosine_turn(kDenseTurn * o.max_turn);
+  const bool fine = geom::distance_to_segment(m->cc.c, a.cc.c, b.cc.c) <= kDenseChord * o.chord_mm &&
                     dot(a.cc.n, m->cc.n) >= turn && dot(m->cc.n, b.cc.n) >= turn &&
                     (o.max_step_mm <= 0 || distance(a.cc.c, b.cc.c) <= o.max_step_mm);
   if (fine) return;
@@ -260,13 +262,23 @@ bool spanned(const std::vector<Node>& nodes, std::size_t i, std::size_t j, const
 
 }  // namespace
 
-std::vector<CcPoint> even_out(const std::vector<Node>& coarse, const Between& between,
-                              const PathOptions& options) {
+std::vector<Node> refined(const std::vector<Node>& coarse, const Between& between,
+                          const PathOptions& options) {
+  PathOptions limits = options;
+  const double step = options.max_step_mm > 0 ? options.max_step_mm : std::numeric_limits<double>::infinity();
+  // Half the distance from the border: what lies nearer between two nodes does so by a 32nd of it at most.
+  const double share = options.edge_mm > 0 ? 0.5 * options.edge_mm : step;
+  const double fine = std::min(share, 0.35 * step);
+  limits.max_step_mm = std::isfinite(fine) ? fine : 0;
   std::vector<Node> dense;
   for (std::size_t i = 0; i < coarse.size(); ++i) {
-    if (i > 0) refine(coarse[i - 1], coarse[i], between, options, kMostHalvings, dense);
+    if (i > 0) refine(coarse[i - 1], coarse[i], between, limits, kMostHalvings, dense);
     dense.push_back(coarse[i]);
   }
+  return dense;
+}
+
+std::vector<CcPoint> thinned(const std::vector<Node>& dense, const PathOptions& options) {
   std::vector<CcPoint> out;
   if (dense.size() < 2) return out;
   out.push_back(dense.front().cc);

@@ -76,9 +76,11 @@ std::vector<std::vector<Node>> kept_runs(const PathFace& face, geom::SurfaceEval
                                          std::vector<Node> nodes, const Between& between);
 /// At least two points, and not all in one place.
 bool has_length(const std::vector<CcPoint>& points, double size);
-/// Puts nodes between those of `coarse` until options' limits hold with room, then leaves out what is not
-/// needed for them: a polyline within chord_mm of the path.
-std::vector<CcPoint> even_out(const std::vector<Node>& coarse, const Between& between,
-                              const PathOptions& options);
+/// Puts nodes between those of a path until there are more than enough for the options' limits (and, where a
+/// distance from the border is to be kept, until the stretches in between cannot miss it by much).
+std::vector<Node> refined(const std::vector<Node>& coarse, const Between& between,
+                          const PathOptions& options);
+/// Leaves out what the limits do not need: a polyline within chord_mm of the path.
+std::vector<CcPoint> thinned(const std::vector<Node>& dense, const PathOptions& options);
 
 }  // namespace burin::orient::detail

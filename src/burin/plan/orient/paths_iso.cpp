@@ -110,10 +110,10 @@ Result<void> IsoFamily::prepare() {
                       "(a face that is wider than twice the distance from its edges)",
                       {}};
   if (!(s.length() > 0)) return nothing;
-  const int spans =
-      static_cast<int>(
-          geom::inner_knots(face_.surface().knots(other(along_)), face_.surface().degree(other(along_))).size()) +
-      1;
+  const int spans = static_cast<int>(geom::inner_knots(face_.surface().knots(other(along_)),
+                                                       face_.surface().degree(other(along_)))
+                                         .size()) +
+                    1;
   const std::vector<double> levels =
       span_places(face_.surface().knots(other(along_)), s, std::max(1, kLevels / std::min(spans, kLevels)));
   std::vector<double> density;
@@ -160,10 +160,10 @@ std::vector<std::vector<CcPoint>> IsoFamily::at(double w) const {
   };
   std::vector<std::vector<CcPoint>> pieces;
   for (const Interval part : intervals(s)) {
-    std::vector<std::vector<Node>> runs{piece(evaluator, s, part)};
+    std::vector<std::vector<Node>> runs{refined(piece(evaluator, s, part), between, options_)};
     if (face_.has_edge()) runs = kept_runs(face_, evaluator, std::move(runs.front()), between);
     for (const std::vector<Node>& run : runs) {
-      std::vector<CcPoint> points = even_out(run, between, options_);
+      std::vector<CcPoint> points = thinned(run, options_);
       if (has_length(points, face_.size())) pieces.push_back(std::move(points));
     }
   }

@@ -341,12 +341,12 @@ std::vector<std::vector<CcPoint>> PlaneFamily::at(double w) const {
   };
   std::vector<std::vector<CcPoint>> pieces;
   for (const Line& line : trace(evaluator, level)) {
-    std::vector<std::vector<Node>> runs{nodes(evaluator, line, level)};
+    std::vector<std::vector<Node>> runs{refined(nodes(evaluator, line, level), between, options_)};
     if (face_.has_edge() || !face_.trims().empty()) {
       runs = kept_runs(face_, evaluator, std::move(runs.front()), between);
     }
     for (const std::vector<Node>& run : runs) {
-      std::vector<CcPoint> points = even_out(run, between, options_);
+      std::vector<CcPoint> points = thinned(run, options_);
       if (has_length(points, face_.size())) pieces.push_back(std::move(points));
     }
   }

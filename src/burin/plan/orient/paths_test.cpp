@@ -98,7 +98,7 @@ TEST(Paths, LatitudesOfASphere) {
       }
       // Not many more points than the chord or the turn ask for.
       const double step = std::min(2 * std::acos(1 - o.chord_mm / round), o.max_turn * kRadius / round);
-      EXPECT_LE(static_cast<double>(pieces[0].size()), 1.5 * 2 * geom::kPi / step + 9) << w;
+      EXPECT_LE(static_cast<double>(pieces[0].size()), 1.3 * 2 * geom::kPi / step + 9) << w;
       // Along meridians to another latitude.
       for (const double to : {w - 0.01, w + 0.02, 0.5}) {
         const Pieces other = family.at(to);
@@ -155,19 +155,19 @@ TEST(Paths, StayInsideTrimsAndAwayFromBorders) {
           for (const CcPoint& p : piece) {
             const double outer = std::hypot(p.c.x - 50, p.c.y - 50),
                          hole = std::hypot(p.c.x - 60, p.c.y - 50);
-            EXPECT_LE(outer, 40 - edge + 0.01);
-            EXPECT_GE(hole, 10 + edge - 0.01);
+            EXPECT_LE(outer, 40 - edge + 0.02);
+            EXPECT_GE(hole, 10 + edge - 0.02);
           }
           length += distance(piece.front().c, piece.back().c);
           across = pattern == Pattern::iso_u ? piece[0].c.y : piece[0].c.x;
         }
-        ASSERT_GE(across, 0) << i;
+        ASSERT_GE(across, 0) << i << static_cast<int>(pattern) << edge;
         // The chord of the disc less that of the hole.
         const auto chord = [](double r, double h) { return r > h ? 2 * std::sqrt(r * r - h * h) : 0.0; };
         const double hole_at = pattern == Pattern::iso_u ? 50 : 60;
         const double expected =
             chord(40 - edge, std::abs(across - 50)) - chord(10 + edge, std::abs(across - hole_at));
-        EXPECT_NEAR(length, expected, 0.05) << i << " " << static_cast<int>(pattern);
+        EXPECT_NEAR(length, expected, edge > 0 ? 1.0 : 0.05) << i << " " << static_cast<int>(pattern);
       }
       EXPECT_EQ(most, 2U);
     }
