@@ -10,6 +10,7 @@
 
 #include "burin/cl/apt.h"
 #include "burin/model/machine.h"
+#include "burin/post/emit_tcp.h"
 #include "cli.h"
 #include "commands.h"
 
@@ -19,6 +20,7 @@ namespace {
 struct PostArgs {
   std::string path, machine;
   post::FeedMode feed = post::FeedMode::inverse_time;
+  bool tcp = false, joints = false;
 };
 
 /// Error for the first pose whose axis is not upright: it needs a machine that can tilt.
@@ -49,7 +51,7 @@ Result<post::NcText> upright_nc(const cl::Program& program, const model::Machine
   return post::emit(program, dialect, options, session.diagnostics);
 }
 
-/// Joint coordinates of a machine with rotary axes.
+/// Joint coordinates of a machine with rotary axes, or tip and rotary angles.
 Result<post::NcText> rotary_nc(const cl::Program& program, const model::Machine& machine,
                                const post::Dialect& dialect, const PostArgs& args, Session& session) {
   auto kinematics = kinematics::Kinematics::make(machine);
@@ -72,6 +74,7 @@ Result<post::NcText> rotary_nc(const cl::Program& program, const model::Machine&
   post::JointEmitOptions emit;
   emit.write_z = true;
   emit.feed = args.feed;
+  if (args.tcp) return post::emit_tcp(program, *kinematics, *path, dialect, emit, session.diagnostics);
   return post::emit_joints(program, *kinematics, *path, dialect, emit, session.diagnostics);
 }
 
@@ -89,6 +92,11 @@ Result<void> run_post(const PostArgs& args, Session& session) {
   const bool rotary = std::any_of(machine->axes.begin(), machine->axes.end(), [](const model::Axis& axis) {
     return axis.kind == model::AxisKind::rotary;
   });
+  if (args.tcp && !rotary)
+    return Error{
+        ErrorCode::usage,
+        "--tcp: machine " + machine->name + " has no rotary axes (a machine with rotary axes, or no --tcp)",
+        {}};
   auto nc = (rotary ? rotary_nc : upright_nc)(*program, *machine, *dialect, args, session);
   if (!nc) return nc.error();
   session.report.parameters["machine"] = machine->name;
@@ -110,7 +118,8 @@ void add_post(Cli& cli) {
       cli.add_command("post", "NC program from a CL file, for machines of three to five axes",
                       "  burin post path.cl --machine xyz --dialect linuxcnc -o path.ngc\n"
                       "  burin post path.cl --machine laser-xy --dialect grbl -o -\n"
-                      "  burin post blade.cl --machine xyzac-trunnion --tolerance 0.005 -o blade.ngc\n",
+                      "  burin post blade.cl --machine xyzac-trunnion --tolerance 0.005 -o blade.ngc\n"
+                      "  burin post blade.cl --machine xyzac-trunnion --dialect fanuc --tcp -o blade.nc\n",
                       [args](Session& session) { return run_post(*args, session); });
   add_text(app, "PATH.cl", args->path, "FILE", "tool path as APT CL text")->required();
   add_text(app, "--machine", args->machine, "NAME",
@@ -120,6 +129,9 @@ void add_post(Cli& cli) {
       app, "--feed-mode", args->feed,
       {{"inverse-time", post::FeedMode::inverse_time}, {"per-minute", post::FeedMode::per_minute}},
       "of machines with rotary axes: G93, or G94 with an F that gives the tip its feed");
+  CLI::Option* tcp = app.add_flag(
+      "--tcp", args->tcp, "tip and rotary angles, for controls with tool-centre-point control (G43.4)");
+  app.add_flag("--joints", args->joints, "joint coordinates (default)")->excludes(tcp);
   cli.add_tolerance(app);
   cli.add_dialect(app);
   cli.add_output(app, "NC program (default: the CL file's name with .ngc)");

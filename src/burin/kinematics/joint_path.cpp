@@ -7,6 +7,7 @@
 #include <string>
 
 #include "burin/base/text.h"
+#include "burin/kinematics/feed_way.h"
 
 namespace burin::kinematics {
 namespace {
@@ -22,23 +23,21 @@ constexpr double kStill_mm = 1e-3;
 // Measured between the ends of a move.
 constexpr double kSamples[] = {0.25, 0.5, 0.75};
 
-/// On the great circle from a to b; along any where they are opposite.
-Vec3 slerp(Vec3 a, Vec3 b, double t) {
-  const Vec3 across = geom::cross(a, b);
-  const double angle = std::atan2(norm(across), dot(a, b));
-  if (angle < 1e-12) return a;
-  const Vec3 axis = norm(across) > 1e-12 ? unit(across) : unit(geom::cross(a, Vec3{a.y, a.z, -a.x}));
-  return turned(a, axis, t * angle);
-}
-
 /// What a motion record asks for, at t in [0, 1].
 struct Wanted {
+  Wanted(const cl::Pose& start, const cl::Pose& end, const cl::Arc* along)
+      : from(start),
+        to(end),
+        straight(start, end),
+        arc(along),
+        sweep(along != nullptr ? cl::arc_sweep(start.tip, *along) : 0) {}
   cl::Pose from, to;
-  const cl::Arc* arc = nullptr;
-  double sweep = 0;
+  FeedWay straight;
+  const cl::Arc* arc;
+  double sweep;
 
   cl::Pose at(double t) const {
-    cl::Pose pose{lerp(from.tip, to.tip, t), slerp(from.axis, to.axis, t)};
+    cl::Pose pose = straight.at(t);
     if (arc != nullptr) {
       const Vec3 spoke = from.tip - arc->center;
       const double rise = dot(to.tip - from.tip, arc->normal);
@@ -110,8 +109,7 @@ class Maker {
   Result<void> cut(const cl::Record& record, const cl::Pose& to) {
     if (!known_)
       return placed(Error{ErrorCode::usage, "the first move is at feed from an unknown place (a rapid)", {}});
-    Wanted wanted{pose_, to, std::get_if<cl::Arc>(&record), 0};
-    if (wanted.arc != nullptr) wanted.sweep = cl::arc_sweep(pose_.tip, *wanted.arc);
+    const Wanted wanted(pose_, to, std::get_if<cl::Arc>(&record));
     int pieces = 1;
     if (wanted.arc != nullptr) {
       const double half =
