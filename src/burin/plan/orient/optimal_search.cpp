@@ -36,7 +36,7 @@ class OptimalSearch {
         break;
       }
     }
-    if (!best.found) best.cause = most();
+    if (!best.found && best.cause == Cause::none) best.cause = most();
   }
 
  private:
@@ -45,8 +45,13 @@ class OptimalSearch {
   }
   void count(Cause cause) { ++causes_[static_cast<std::size_t>(cause)]; }
   Cause most() const {
+    // Known places may have answered everything.
+    std::size_t best = known_.size();
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      if (best == known_.size() || known_.uses(i) > known_.uses(best)) best = i;
     const auto most = std::max_element(causes_.begin(), causes_.end());
-    return *most > 0 ? static_cast<Cause>(most - causes_.begin()) : Cause::none;
+    if (*most > 0) return static_cast<Cause>(most - causes_.begin());
+    return best < known_.size() ? setting_.scene->body()[known_.witness(best).piece].cause : Cause::none;
   }
 
   void ask(Envelope& envelope, std::size_t i, Optimum& best) {
