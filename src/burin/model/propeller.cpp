@@ -64,7 +64,7 @@ struct Placing {
 struct Grids {
   std::vector<double> u, v;
   geom::PointGrid face, back;
-  double lowest = 0, highest = 0;  ///< z of the root
+  double lowest = 1e300, highest = -1e300;  ///< z of the root
 };
 
 /// Radii that make the chord a smooth function of v up to the round tip.
@@ -191,7 +191,8 @@ Result<Propeller> make_propeller(const PropellerData& data) {
   out.leading_edge = *std::move(leading), out.trailing_edge = *std::move(trailing);
   out.hub_radius = 0.5 * data.hub_ratio * data.diameter;
   out.tip_radius = 0.5 * kOutermost * data.diameter;
-  out.hub_height = 2 * kHubMargin * std::max(-grids->lowest, grids->highest);
+  out.hub_height = kHubMargin * (grids->highest - grids->lowest);
+  out.hub_bottom = 0.5 * (grids->highest + grids->lowest - out.hub_height);
   return out;
 }
 

@@ -134,14 +134,15 @@ Mesh hub_mesh(const PropellerData&, const Propeller& propeller, double deflectio
   const int n = wanted < kMostSides ? std::max(kFewestSides, static_cast<int>(wanted)) : kMostSides;
   const auto count = static_cast<std::uint32_t>(n);
   Mesh mesh;
-  for (const double z : {-0.5 * propeller.hub_height, 0.5 * propeller.hub_height}) {
+  const double bottom = propeller.hub_bottom, top = bottom + propeller.hub_height;
+  for (const double z : {bottom, top}) {
     for (int i = 0; i < n; ++i) {
       const double a = 2 * geom::kPi * i / n;
       mesh.vertices.push_back({r * std::cos(a), r * std::sin(a), z});
     }
   }
-  mesh.vertices.push_back({0, 0, -0.5 * propeller.hub_height});
-  mesh.vertices.push_back({0, 0, 0.5 * propeller.hub_height});
+  mesh.vertices.push_back({0, 0, bottom});
+  mesh.vertices.push_back({0, 0, top});
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t k = (i + 1) % count;
     mesh.triangles.push_back({i, k, count + k});
