@@ -112,7 +112,8 @@ Result<Series> Series::parse(std::string_view toml) {
   series.pitch_four_ = Cubic::monotone(radius, numbers(reader, outline, "pitch_four", n));
   const auto read_outline = [&](std::string_view name) {
     const toml::table& table = reader.subtable(outline, name);
-    std::vector<double> chord = numbers(reader, table, "chord", n), middle = numbers(reader, table, "leading", n);
+    std::vector<double> chord = numbers(reader, table, "chord", n),
+                        middle = numbers(reader, table, "leading", n);
     std::vector<double> thickest = numbers(reader, table, "thickest", n), inner = radius;
     for (std::size_t i = 0; i < n; ++i) middle[i] = (middle[i] - 0.5) * chord[i];
     // The outline is round at the tip: chord / sqrt(1 - r / R) is smooth there. The ratios mean nothing at r
@@ -120,7 +121,8 @@ Result<Series> Series::parse(std::string_view toml) {
     inner.pop_back(), chord.pop_back(), middle.pop_back();
     for (std::size_t i = 0; i + 1 < n; ++i) chord[i] /= std::sqrt(1 - inner[i]);
     thickest.back() = thickest[n - 2];
-    return Outline{Cubic::spline(inner, chord), Cubic::spline(inner, middle), Cubic::monotone(radius, thickest)};
+    return Outline{Cubic::spline(inner, chord), Cubic::spline(inner, middle),
+                   Cubic::monotone(radius, thickest)};
   };
   series.three_ = read_outline("three");
   series.more_ = read_outline("more");
@@ -133,8 +135,10 @@ Result<Series> Series::parse(std::string_view toml) {
   std::vector<std::vector<double>> v1(places), v2(places);
   for (const toml::table* table : reader.tables(section, "at")) {
     at.push_back(reader.number(*table, "radius", 0, 1));
-    const std::vector<double> a = numbers(reader, *table, "v1", places), b = numbers(reader, *table, "v2", places);
-    for (std::size_t i = 0; i < places; ++i) v1[i].push_back(a[places - 1 - i]), v2[i].push_back(b[places - 1 - i]);
+    const std::vector<double> a = numbers(reader, *table, "v1", places),
+                              b = numbers(reader, *table, "v2", places);
+    for (std::size_t i = 0; i < places; ++i)
+      v1[i].push_back(a[places - 1 - i]), v2[i].push_back(b[places - 1 - i]);
   }
   if (at.size() < 4) reader.fail(section, "fewer than four sections");
   if (reader.error()) return *reader.error();

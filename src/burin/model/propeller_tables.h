@@ -26,11 +26,11 @@ class Cubic {
 
 /// One row of the section tables at any radius; offsets by place along the chord, from the leading edge.
 struct SeriesAt {
-  double chord = 0;     ///< c / D * Z / (Ae / Ao)
-  double middle = 0;    ///< generator line to mid chord, towards the leading edge, in the same unit
-  double thickest = 0;  ///< leading edge to greatest thickness, over the chord
-  double thickness = 0; ///< t_max / D
-  double pitch = 1;     ///< share of the nominal pitch
+  double chord = 0;      ///< c / D * Z / (Ae / Ao)
+  double middle = 0;     ///< generator line to mid chord, towards the leading edge, in the same unit
+  double thickest = 0;   ///< leading edge to greatest thickness, over the chord
+  double thickness = 0;  ///< t_max / D
+  double pitch = 1;      ///< share of the nominal pitch
   std::vector<double> v1, v2;
 };
 

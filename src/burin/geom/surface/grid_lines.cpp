@@ -95,7 +95,8 @@ class Chooser {
       for (std::size_t i = 0; i < spans_->u.size(); ++i) {
         const auto& m = spans_->at(i, j);
         const double length = spans_->u[i].length();
-        double wanted = std::max(std::ceil(length * std::sqrt(m.uu / (share * eight_d))), for_edges(m.u, length));
+        double wanted =
+            std::max(std::ceil(length * std::sqrt(m.uu / (share * eight_d))), for_edges(m.u, length));
         if (square && m.v > 0)
           wanted = std::max(wanted, std::ceil(length * std::sqrt(m.uv * (m.u / m.v) / (0.5 * eight_d))));
         n.u[i] = std::max(n.u[i], wanted);
@@ -120,7 +121,8 @@ std::vector<double> lines(const std::vector<Interval>& spans, const std::vector<
   std::vector<double> out;
   for (std::size_t i = 0; i < spans.size(); ++i) {
     const auto n = static_cast<std::size_t>(counts[i]);
-    for (std::size_t k = 0; k < n; ++k) out.push_back(spans[i].lo + spans[i].length() * (double(k) / double(n)));
+    for (std::size_t k = 0; k < n; ++k)
+      out.push_back(spans[i].lo + spans[i].length() * (double(k) / double(n)));
   }
   out.push_back(spans.back().hi);
   // Spans of a few rounding units cannot be cut as often as others ask for.
@@ -153,7 +155,8 @@ Result<GridLines> grid_lines(const NurbsSurface& surface, const TessellateOption
       const double far = counts.total / most;
       deflection *= far > 4 * kCoarser ? far / 4 : kCoarser;
       counts = chooser.choose(deflection);
-      if (!std::isfinite(deflection)) return Error{ErrorCode::range, "a surface too large to be cut in triangles", {}};
+      if (!std::isfinite(deflection))
+        return Error{ErrorCode::range, "a surface too large to be cut in triangles", {}};
     }
   }
   return GridLines{lines(spans.u, counts.u), lines(spans.v, counts.v), chooser.deflection(counts)};

@@ -118,8 +118,7 @@ double largest_root(double h, double a2, double a3, double a4) {
 double edge_reaches_top(const Side& a) {
   const double x1 = a.cb, x2 = -a.s * a.ca, y1 = -a.s, y2 = -a.cb * a.ca, z2 = a.sa;
   const double k = a.circle.k, top = a.circle.top(), g = 2 * a.ring;
-  const double a2 =
-      g * (z2 - a.ring * (k * x1 * x1 + 2 * a.k_ft * x1 * y1 + a.k_ff * y1 * y1)) - 2 * top;
+  const double a2 = g * (z2 - a.ring * (k * x1 * x1 + 2 * a.k_ft * x1 * y1 + a.k_ff * y1 * y1)) - 2 * top;
   const double a3 = -2 * g * a.ring * (k * x1 * x2 + a.k_ft * (x1 * y2 + x2 * y1) + a.k_ff * y1 * y2);
   const double a4 =
       g * (z2 - a.ring * (k * (x2 * x2 + z2 * z2) + 2 * a.k_ft * x2 * y2 + a.k_ff * y2 * y2)) - top;
@@ -169,8 +168,7 @@ double flat_side(const Side& a) {
   const double end = std::max({reached, side, wide});
   const Place p = edge_at(a, end);
   const double z = lowered(a, p);
-  const double width =
-      end > reached && side >= wide ? along_side(a, p.x, z) : a.circle.foot(p.x, z);
+  const double width = end > reached && side >= wide ? along_side(a, p.x, z) : a.circle.foot(p.x, z);
   return std::max(width, under_bottom(a, p));
 }
 
@@ -233,9 +231,7 @@ double outline_reaches_top(const Side& a, double hi) {
 double bull_side(const Side& a) {
   const double side = 2 * std::atan2(1.0, side_begins(a));
   double end = outline_reaches_top(a, side);
-  const auto widens = [&](const Outline& o) {
-    return a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx > 0;
-  };
+  const auto widens = [&](const Outline& o) { return a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx > 0; };
   Outline o = outline(a, end);
   if (widens(o)) return end == side ? along_side(a, o.x, o.z) : a.circle.foot(o.x, o.z);
   double lo = 0, hi = end;
@@ -258,8 +254,7 @@ double resting_side(const Side& a) {
   };
   const auto within = [&](double angle) {
     const Outline o = place(angle);
-    return a.circle.level(o.x, o.z) <= a.circle.top() &&
-           a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx >= 0;
+    return a.circle.level(o.x, o.z) <= a.circle.top() && a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx >= 0;
   };
   if (!within(0)) {
     // The flat is left before its end: z = 0 at the top level.

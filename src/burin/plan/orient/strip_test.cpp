@@ -24,7 +24,8 @@ double outside(const model::Mill& mill, const cl::Pose& pose, Point3 q) {
   return std::min(std::max(a, b), 0.0) + std::hypot(std::max(a, 0.0), std::max(b, 0.0)) - r;
 }
 
-/// The places that pass over one place of the surface while the tool moves on: as a curve in the tool's frame.
+/// The places that pass over one place of the surface while the tool moves on: as a curve in the tool's
+/// frame.
 using Passing = std::function<Point3(double way)>;
 
 /// Least of outside() along the curve, by a scan and golden section.
@@ -38,8 +39,10 @@ double least(const model::Mill& mill, const cl::Pose& pose, const Passing& q, do
   double lo = at - 2 * reach / kScan, hi = at + 2 * reach / kScan;
   for (int i = 0; i < 60; ++i) {
     const double a = lo + 0.382 * (hi - lo), b = hi - 0.382 * (hi - lo);
-    if (outside(mill, pose, q(a)) < outside(mill, pose, q(b))) hi = b;
-    else lo = a;
+    if (outside(mill, pose, q(a)) < outside(mill, pose, q(b)))
+      hi = b;
+    else
+      lo = a;
   }
   return std::min(best, outside(mill, pose, q(0.5 * (lo + hi))));
 }
@@ -88,8 +91,11 @@ struct Random {
 
 model::Mill a_mill(Random& random, bool bull) {
   const double radius = random(10, 125);
-  return {bull ? model::MillKind::bull : model::MillKind::flat, radius, bull ? random(0.02, 1) * radius : 0,
-          2 * radius, {}};
+  return {bull ? model::MillKind::bull : model::MillKind::flat,
+          radius,
+          bull ? random(0.02, 1) * radius : 0,
+          2 * radius,
+          {}};
 }
 
 CcPoint point_of(const Bent& bent) {
@@ -131,8 +137,8 @@ TEST(Strip, CurvedFeedAsTheToolThatTurnsWithTheSurface) {
     for (const int side : {1, -1}) {
       const double mine = side == 1 ? strip.left : strip.right;
       const double true_one = by_sampling(mill, angles, bent, scallop, side, mine);
-      std::printf("%d %d %.4f %.4f %.4f  R %.1f r %.1f a %.1f b %.1f kt %.3f kf %.3f h %.4f\n", i, side, mine, true_one,
-                  mine / true_one - 1, mill.radius, mill.corner_radius, angles.alpha / kDegree,
+      std::printf("%d %d %.4f %.4f %.4f  R %.1f r %.1f a %.1f b %.1f kt %.3f kf %.3f h %.4f\n", i, side, mine,
+                  true_one, mine / true_one - 1, mill.radius, mill.corner_radius, angles.alpha / kDegree,
                   angles.beta / kDegree, bent.k_tt * mill.radius, bent.k_ff * mill.radius, scallop);
     }
   }
