@@ -68,26 +68,14 @@ Cubic Cubic::spline(std::vector<double> x, std::vector<double> y) {
 }
 
 Cubic Cubic::monotone(std::vector<double> x, std::vector<double> y) {
-  const std::size_t n = x.size();
-  Cubic out;
-  out.slope_.assign(n, 0.0);
-  const auto h = [&](std::size_t i) { return x[i + 1] - x[i]; };
-  const auto m = [&](std::size_t i) { return (y[i + 1] - y[i]) / h(i); };
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double left = m(i - 1), right = m(i);
-    if (left * right <= 0) continue;
-    const double w = 2 * h(i) + h(i - 1), v = h(i) + 2 * h(i - 1);
-    out.slope_[i] = (w + v) / (w / left + v / right);
+  Cubic out = spline(std::move(x), std::move(y));
+  const std::size_t n = out.x_.size();
+  const auto m = [&](std::size_t i) { return (out.y_[i + 1] - out.y_[i]) / (out.x_[i + 1] - out.x_[i]); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double left = m(i > 0 ? i - 1 : 0), right = m(i + 1 < n ? i : n - 2);
+    const double most = left * right > 0 ? 3 * std::min(std::abs(left), std::abs(right)) : 0;
+    out.slope_[i] = left > 0 ? std::clamp(out.slope_[i], 0.0, most) : std::clamp(out.slope_[i], -most, 0.0);
   }
-  // Three points at the ends, as far as the first piece stays monotone.
-  const auto end = [](double h0, double h1, double m0, double m1) {
-    const double slope = ((2 * h0 + h1) * m0 - h0 * m1) / (h0 + h1);
-    if (slope * m0 <= 0) return 0.0;
-    return std::abs(slope) > 3 * std::abs(m0) ? 3 * m0 : slope;
-  };
-  out.slope_[0] = end(h(0), h(1), m(0), m(1));
-  out.slope_[n - 1] = end(h(n - 2), h(n - 3), m(n - 2), m(n - 3));
-  out.x_ = std::move(x), out.y_ = std::move(y);
   return out;
 }
 

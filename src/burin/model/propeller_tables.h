@@ -16,7 +16,8 @@ class Cubic {
   /// Two continuous derivatives, no jump of the third at the first and last inner place ("not a knot"). At
   /// least four places.
   static Cubic spline(std::vector<double> x, std::vector<double> y);
-  /// One continuous derivative, never beyond the neighbouring places (Fritsch & Butland 1984).
+  /// The same with slopes cut down where it would go beyond neighbouring places (Hyman 1983): one continuous
+  /// derivative there, two elsewhere.
   static Cubic monotone(std::vector<double> x, std::vector<double> y);
   double operator()(double x) const;
 

@@ -11,10 +11,9 @@
 namespace burin::geom::detail {
 namespace {
 
-/// Parts are halved until the bounds are within this of what the surface really has at the corners of parts
-/// (a fifth more makes a tenth more lines), or until there have been so many.
+/// Parts are halved until the bounds are within this of what the surface really has at the corners of parts:
+/// a fifth more makes a tenth more lines.
 constexpr double kGoodEnough = 1.2;
-constexpr int kMostHalvings = 80;
 /// A derivative that takes less than this share of the deviation need not be known well.
 constexpr double kSmallPart = 0.02;
 
@@ -198,12 +197,12 @@ std::optional<std::size_t> worst_leaf(const std::vector<Leaf>& leaves, const Net
 
 }  // namespace
 
-SecondBounds second_bounds(const BezierPatch& patch) {
+SecondBounds second_bounds(const BezierPatch& patch, int most_halvings) {
   const Net net{patch.surface.degree_u, patch.surface.degree_v, patch.u.length(), patch.v.length(),
                 patch.surface.points};
   std::vector<Leaf> leaves{leaf(net)};
   const SecondBounds whole = leaves.front().bound;
-  for (int k = 0; k < kMostHalvings; ++k) {
+  for (int k = 0; k < most_halvings; ++k) {
     const auto at = worst_leaf(leaves, net);
     if (!at) break;
     const auto [left, right] = halved(leaves[*at].net, Direction::u);

@@ -236,13 +236,12 @@ Setting setting_of(const Scene& scene, const MachineLimits& limits, const Orient
   return {&scene, &limits, options.range};
 }
 
-Result<OrientPlan> plan(const Part& part, const model::Mill& mill, const std::vector<CcPath>& contacts,
-                        const kinematics::Kinematics* machine, const OrientOptions& options, Workers& workers,
-                        Diagnostics& diagnostics, ProgressSink* progress) {
-  if (auto ok = model::validate(mill); !ok) return ok.error();
+Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimits& limits,
+                        const std::vector<CcPath>& contacts, const kinematics::Kinematics* machine,
+                        const OrientOptions& options, Workers& workers, Diagnostics& diagnostics,
+                        ProgressSink* progress) {
   if (auto ok = validate(options); !ok) return ok.error();
-  const Scene scene(part.mesh, mill, tool_body(mill, options.tolerance_mm, options.clearance_mm));
-  const MachineLimits limits = machine != nullptr ? MachineLimits(*machine) : MachineLimits();
+  const model::Mill& mill = scene.mill();
   const RadiusGoal radius(mill);
   const StripGoal strip(mill, options.scallop_mm);
   PathTask task;

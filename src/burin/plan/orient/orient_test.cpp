@@ -49,11 +49,16 @@ OrientOptions coarse() {
   return options;
 }
 
+Scene scene_of(const Part& part) {
+  return {part.mesh, mill(), tool_body(mill(), 0.01, 1)};
+}
+
 OrientPlan planned(const Part& part, const OrientOptions& options, unsigned threads = 1,
                    const std::vector<CcPath>& contacts = {}) {
   LocalWorkers workers(threads);
   Diagnostics diagnostics;
-  auto result = plan(part, mill(), contacts, nullptr, options, workers, diagnostics, nullptr);
+  auto result =
+      plan(part, scene_of(part), MachineLimits(), contacts, nullptr, options, workers, diagnostics, nullptr);
   EXPECT_TRUE(result) << (result ? "" : result.error().message);
   return result ? std::move(*result) : OrientPlan{};
 }
@@ -113,7 +118,8 @@ TEST(OrientPlan, ContactsOffTheDesignAreNamed) {
   for (const double z : {0.0, -0.5, 0.3}) path.points.push_back({{0, 0, z}, {0, 0, 1}, {1, 0, 0}});
   LocalWorkers workers(1);
   Diagnostics diagnostics;
-  const auto result = plan(part, mill(), {path}, nullptr, coarse(), workers, diagnostics, nullptr);
+  const auto result =
+      plan(part, scene_of(part), MachineLimits(), {path}, nullptr, coarse(), workers, diagnostics, nullptr);
   ASSERT_TRUE(result);
   EXPECT_EQ(diagnostics.count("contact_inside"), 1U);
   EXPECT_EQ(diagnostics.count("contact_off"), 1U);
@@ -125,12 +131,14 @@ TEST(OrientPlan, ContactsOffTheDesignAreNamed) {
 
 TEST(OrientPlan, RefusesWhatCannotBe) {
   const Part part = bent(0, 0, 0);
+  const Scene scene = scene_of(part);
   LocalWorkers workers(1);
   Diagnostics diagnostics;
   const auto refused = [&](auto&& change) {
     OrientOptions options = coarse();
     change(options);
-    const auto result = plan(part, mill(), {}, nullptr, options, workers, diagnostics, nullptr);
+    const auto result =
+        plan(part, scene, MachineLimits(), {}, nullptr, options, workers, diagnostics, nullptr);
     return !result && !result.error().message.empty();
   };
   EXPECT_TRUE(refused([](OrientOptions& o) { o.range.alpha_hi = 0.01; }));
@@ -145,7 +153,7 @@ TEST(OrientPlan, RefusesWhatCannotBe) {
   EXPECT_TRUE(refused([](OrientOptions& o) { o.max_points = 10; }));
   Part no_faces = part;
   no_faces.faces.clear();
-  EXPECT_FALSE(plan(no_faces, mill(), {}, nullptr, coarse(), workers, diagnostics, nullptr));
+  EXPECT_FALSE(plan(no_faces, scene, MachineLimits(), {}, nullptr, coarse(), workers, diagnostics, nullptr));
 }
 
 }  // namespace

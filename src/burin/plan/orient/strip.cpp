@@ -199,23 +199,36 @@ Outline outline(const Side& a, double angle) {
   return o;
 }
 
-/// The least angle in [0, hi] at which the outline reaches the top level, hi when it does not.
+/// A first guess of the angle at which the outline reaches the top level: near the contact point the level
+/// grows with the square of the angle. Where the tool cuts in beside the contact point it does not; then a
+/// small angle to begin with.
+double first_guess(const Side& a) {
+  constexpr double kSmall = 1e-2;
+  const double bend = a.sa - a.ring * (a.k_ff * a.s * a.s - 2 * a.k_ft * a.s * a.cb);
+  if (!(a.cb > 0) || !(a.ring > 0)) return kSmall;
+  // Curvature of the ring's profile, of the bull nose's, and what the surface leaves of it.
+  const double ring = bend / (a.ring * square(a.cb));
+  const double nose = ring / (1 + a.corner * ring);
+  const double rest = nose - a.circle.k;
+  if (!(ring > 0) || !(rest > 0)) return kSmall;
+  return std::sqrt(2 * a.circle.h / rest) * nose / ring / (a.ring * a.cb);
+}
+
+/// The first angle in [0, hi] at which the outline reaches the top level, hi when it does not.
 double outline_reaches_top(const Side& a, double hi) {
+  constexpr double kStride = 1.3;  // of the steps until the level is passed
   const double top = a.circle.top(), root = std::sqrt(top);
   const auto level = [&](const Outline& o) { return a.circle.level(o.x, o.z); };
-  if (level(outline(a, hi)) <= top) return hi;
-  double lo = 0;
-  // Near the contact point the level grows with the square of the angle.
-  double angle = hi;
-  const double bend = a.sa - a.ring * (a.k_ff * a.s * a.s - 2 * a.k_ft * a.s * a.cb), across = square(a.cb);
-  if (bend > 0 && across > 0) {
-    const double radius = a.ring * across / bend;
-    const double rest = 1 / (radius + a.corner) - a.circle.k;
-    if (rest > 0) angle = std::sqrt(2 * a.circle.h / rest) / (radius + a.corner) * radius / (a.ring * a.cb);
+  double lo = 0, angle = std::min(first_guess(a), hi);
+  Outline o = outline(a, angle);
+  while (level(o) < top) {
+    if (angle >= hi) return hi;
+    lo = angle;
+    angle = std::min(kStride * angle, hi);
+    o = outline(a, angle);
   }
-  if (!(angle > 0 && angle < hi)) angle = 0.5 * hi;
+  hi = angle;
   for (int i = 0; i < kMaxSteps; ++i) {
-    const Outline o = outline(a, angle);
     const double at = level(o);
     (at < top ? lo : hi) = angle;
     const double slope = (o.tz - a.circle.k * (o.x * o.tx + o.z * o.tz)) * o.speed;
@@ -224,8 +237,9 @@ double outline_reaches_top(const Side& a, double hi) {
     if (!(to > lo && to < hi)) to = 0.5 * (lo + hi);
     if (hi - lo <= kAngleShare * hi) return hi;
     angle = to;
+    o = outline(a, angle);
   }
-  return lo;
+  return hi;
 }
 
 double bull_side(const Side& a) {
