@@ -9,6 +9,7 @@
 #include "burin/base/parallel.h"
 #include "burin/base/text.h"
 #include "burin/cl/apt.h"
+#include "burin/job/orient_check.h"
 #include "burin/plan/orient/to_cl.h"
 #include "burin/post/emit_tcp.h"
 #include "burin/view/orient_html.h"
@@ -223,8 +224,8 @@ Json comparison_json(const orient::Comparison& c) {
           {"cut_mm", c.cut_mm},       {"cut_min", c.minutes}};
 }
 
-void fill_report(const OrientSetup& setup, const OrientRun& run, std::optional<double> gouge_mm,
-                 Session& session) {
+void fill_report(const OrientSetup& setup, const OrientRun& run,
+                 const std::optional<verify::MillCheckReport>& check, Session& session) {
   const orient::OrientPlan& plan = run.plan;
   Report& r = session.report;
   r.parameters = parameters(setup, session.common.dialect);
@@ -253,7 +254,13 @@ void fill_report(const OrientSetup& setup, const OrientRun& run, std::optional<d
   r.quality = {{"rho_gain_mean", plan.gain_mean},
                {"rho_gain_per_path", plan.gain_per_path},
                {"axis_step_max_deg", degrees(plan.axis_step_max)},
-               {"gouge_max_mm", gouge_mm ? Json(*gouge_mm) : Json(nullptr)}};
+               {"gouge_max_mm", check ? Json(check->gouge_max_mm()) : Json(nullptr)}};
+  if (check) {
+    r.quality["gouge_cutter_mm"] = check->cutter.mm;
+    r.quality["gouge_shank_mm"] = check->shank.mm;
+    r.quality["gouge_holder_mm"] = check->holder.mm;
+    r.quality["bound_mm"] = check->bound_mm + setup.part.deflection_mm;
+  }
   if (setup.file.options.smooth) {
     r.quality["smooth_loss_mean"] = loss;
     r.quality["rotary_speed_share_max"] = speed;
@@ -269,6 +276,22 @@ void fill_report(const OrientSetup& setup, const OrientRun& run, std::optional<d
     r.time_s[c.name + "_machining"] = c.possible ? Json(60 * c.minutes) : Json(nullptr);
   }
   r.extra["comparisons"] = std::move(comparisons);
+}
+
+/// What the independent check found beyond the tolerance.
+void warn_of_gouge(const OrientSetup& setup, const verify::MillCheckReport& check, Session& session) {
+  const auto say = [&](const verify::MillFinding& found, const char* what, double allowed) {
+    if (found.mm <= allowed + check.bound_mm) return;
+    session.diagnostics.add({Severity::left_out,
+                             "gouge",
+                             std::string("the ") + what + " gets " + format_fixed(found.mm, 4) +
+                                 " mm into the part at move " + std::to_string(found.move),
+                             {},
+                             std::array{found.at.x, found.at.y, found.at.z}});
+  };
+  say(check.cutter, "cutting body", setup.file.options.tolerance_mm);
+  say(check.shank, "shank", 0);
+  say(check.holder, "holder", 0);
 }
 
 // --- pictures
@@ -434,9 +457,19 @@ Result<void> run_orient(const OrientArgs& args, Session& session) {
   if (auto ok = judge(args, *setup, run.plan, session); !ok) return in_file(ok.error());
   if (auto ok = make_motion(args, *setup, scene, limits, *dialect, !names->nc.empty(), run, session); !ok)
     return in_file(ok.error());
+  std::optional<verify::MillCheckReport> check;
+  if (!session.common.json.empty() || !session.common.html.empty()) {
+    auto checked = job::check_orient_motion(
+        setup->part, setup->file.mill, run.path.program, setup->machine_or_null(),
+        run.joints && !args.tcp ? &*run.joints : nullptr, setup->file.options.tolerance_mm,
+        static_cast<unsigned>(session.common.threads));
+    if (!checked) return in_file(checked.error());
+    check = std::move(*checked);
+    warn_of_gouge(*setup, *check, session);
+  }
   session.end_progress();
   session.diagnostics.locate(args.job);
-  fill_report(*setup, run, std::nullopt, session);
+  fill_report(*setup, run, check, session);
   return put_outputs(args, *setup, run, scene, limits, names->nc, names->cl, session);
 }
 
