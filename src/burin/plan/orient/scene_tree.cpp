@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "burin/plan/orient/scene_fit.h"
 
@@ -14,6 +15,9 @@ using geom::Vec3;
 namespace {
 
 constexpr std::size_t kPacket = 4, kWide = 8;
+/// The directions of a box are chosen from this many triangles, those of a cut from fewer: most of the time
+/// of building goes there.
+constexpr std::size_t kSample = 64, kCutSample = 16;
 
 /// A run of the order of triangles.
 struct Run {
@@ -41,8 +45,8 @@ class Builder {
   int packet(const Run& run);
   std::size_t split(const Run& run, int level);
   std::size_t split_by_side(const Run& run, const FittedBox& box);
-  FittedBox fit(const Run& run) const {
-    return fit_box(run.count(), [&](std::size_t i) { return corners(order_[run.first + i]); });
+  FittedBox fit(const Run& run, std::size_t sample = kSample) const {
+    return fit_box(mesh_, std::span(order_).subspan(run.first, run.count()), sample);
   }
 
   const geom::Mesh& mesh_;
@@ -140,7 +144,7 @@ std::size_t Builder::split_by_side(const Run& run, const FittedBox& box) {
 /// Where to cut the run, after bringing it into order: whole packets on the left of a cut across the longest
 /// direction.
 std::size_t Builder::split(const Run& run, int level) {
-  const FittedBox box = fit(run);
+  const FittedBox box = fit(run, kCutSample);
   // Cuts by side need not halve: few of them, so that the levels stay few.
   constexpr int kSideLevels = 12;
   if (level < kSideLevels) {
