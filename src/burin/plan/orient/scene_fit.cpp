@@ -87,7 +87,7 @@ std::array<Vec3, 3> directions(const std::vector<Vec3>& corners, const Vec3& nor
   };
   if (norm(normal) > 0.5 && width(normal) < width(n)) n = normal;
   const Vec3 p = across(n), q = cross(n, p);
-  constexpr int kTurns = 8;
+  constexpr int kTurns = 4;
   Vec3 best_a = p, best_b = q;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kTurns; ++i) {
