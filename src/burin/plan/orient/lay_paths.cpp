@@ -40,6 +40,19 @@ class StripFinder {
 
   /// Nothing when no part of the lane is within `reach`, or it is unreachable there.
   std::optional<Strip> at(Point3 place, double reach) {
+    if (!near(place, reach)) return std::nullopt;
+    const auto& p = lane_.pieces[piece_];
+    const auto& s = lane_.strips[piece_];
+    const std::size_t k = segment_, l = std::min(k + 1, p.size() - 1);
+    if (!(s[k].width() > 0) || !(s[l].width() > 0)) return std::nullopt;
+    const geom::Vec3 way = p[l].c - p[k].c;
+    const double length2 = dot(way, way);
+    const double x = length2 > 0 ? std::clamp(dot(place - p[k].c, way) / length2, 0.0, 1.0) : 0;
+    return Strip{s[k].left + x * (s[l].left - s[k].left), s[k].right + x * (s[l].right - s[k].right)};
+  }
+
+  /// Whether some of the lane is within `reach`; it is then the place that at() begins to look from.
+  bool near(Point3 place, double reach) {
     double best = std::numeric_limits<double>::infinity();
     std::size_t best_piece = 0, best_segment = 0;
     const auto look = [&](std::size_t piece, std::size_t segment) {
@@ -70,16 +83,9 @@ class StripFinder {
         for (std::size_t k = 0; k + 1 < lane_.pieces[i].size(); ++k) look(i, k);
       }
     }
-    if (!(best <= reach)) return std::nullopt;
+    if (!(best <= reach)) return false;
     piece_ = best_piece, segment_ = best_segment;
-    const auto& p = lane_.pieces[piece_];
-    const auto& s = lane_.strips[piece_];
-    const std::size_t k = segment_, l = std::min(k + 1, p.size() - 1);
-    if (!(s[k].width() > 0) || !(s[l].width() > 0)) return std::nullopt;
-    const geom::Vec3 way = p[l].c - p[k].c;
-    const double length2 = dot(way, way);
-    const double x = length2 > 0 ? std::clamp(dot(place - p[k].c, way) / length2, 0.0, 1.0) : 0;
-    return Strip{s[k].left + x * (s[l].left - s[k].left), s[k].right + x * (s[l].right - s[k].right)};
+    return true;
   }
 
  private:
@@ -99,7 +105,16 @@ double one_way_load(const PathFamily& family, const Lane& a, const Lane& b) {
     StripFinder finder(b);
     for (std::size_t k = 0; k < there.size(); ++k) {
       const Strip& mine = a.strips[i][k];
-      if (!there[k].found || !(mine.width() > 0)) continue;
+      if (!(mine.width() > 0)) continue;
+      if (!there[k].found && std::isfinite(there[k].border)) {
+        // A border between the two, and the neighbour has nothing near: this lane alone covers up to it (the
+        // top of a lobe, a hole's rim). Where the neighbour ends near by, the border only slants.
+        if (!finder.near(there[k].place, there[k].distance)) {
+          load = std::max(load, load_of(there[k].border, there[k].left ? mine.left : mine.right));
+        }
+        continue;
+      }
+      if (!there[k].found) continue;
       const auto other = finder.at(there[k].place, kBeyondEnd * there[k].distance);
       if (!other) continue;
       const double strips = there[k].left ? mine.left + other->right : mine.right + other->left;
