@@ -21,7 +21,10 @@ constexpr double kSameFeed = 1e-6;
 
 class TcpEmitter : AxisWriter {
  public:
-  using AxisWriter::AxisWriter;
+  TcpEmitter(const cl::Program& program, const kinematics::Kinematics& machine,
+             const kinematics::JointPath& path, const Dialect& dialect, const EmitOptions& options,
+             Diagnostics& diagnostics)
+      : AxisWriter(program, machine, path, dialect, options, diagnostics) {}
 
   Result<NcText> run() {
     if (auto ok = check(); !ok) return ok.error();
