@@ -13,14 +13,15 @@
 #include "burin/post/emit_tcp.h"
 #include "cli.h"
 #include "commands.h"
+#include "joint_options.h"
 
 namespace burin::cli {
 namespace {
 
 struct PostArgs {
   std::string path, machine;
-  post::FeedMode feed = post::FeedMode::inverse_time;
-  bool tcp = false, joints = false;
+  JointOptions joints;
+  bool tcp = false, as_joints = false;
 };
 
 /// Error for the first pose whose axis is not upright: it needs a machine that can tilt.
@@ -45,9 +46,6 @@ Result<void> check_upright(const cl::Program& program, const model::Machine& mac
 
 Result<post::NcText> upright_nc(const cl::Program& program, const model::Machine& machine,
                                 const post::Dialect& dialect, const PostArgs& args, Session& session) {
-  if (args.tcp)
-    return Error{
-        ErrorCode::usage, "--tcp: machine " + machine.name + " has no rotary axes (without --tcp)", {}};
   if (auto upright = check_upright(program, machine, args.path); !upright) return upright.error();
   post::EmitOptions options;
   options.write_z = machine.axis('Z') != nullptr;
@@ -135,9 +133,6 @@ void add_post(Cli& cli) {
   app.add_flag("--joints", args->as_joints, "joint coordinates (default)")->excludes(tcp);
   add_feed_mode(app, args->joints, "joint coordinates of machines with rotary axes: ");
   add_keep_acceleration(app, args->joints);
-  CLI::Option* tcp = app.add_flag(
-      "--tcp", args->tcp, "tip and rotary angles, for controls with tool-centre-point control (G43.4)");
-  app.add_flag("--joints", args->joints, "joint coordinates (default)")->excludes(tcp);
   cli.add_tolerance(app);
   cli.add_dialect(app);
   cli.add_output(app, "NC program (default: the CL file's name with .ngc)");

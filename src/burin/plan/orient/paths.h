@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,8 @@ class PathFamily {
     geom::Point3 place;   ///< on the path at w_to
     double distance = 0;  ///< along t, on the surface
     bool left = false;    ///< towards +t
+    /// Not found because the trims' border lies between: its distance; else infinite.
+    double border = std::numeric_limits<double>::infinity();
   };
   std::vector<Abreast> abreast(const std::vector<CcPoint>& from, double w, double w_to) const;
   /// Largest distance between the paths at the two ends of the family over all stations: a length of the
