@@ -16,6 +16,8 @@ constexpr int kLimitSteps = 128;
 constexpr double kTiltTolerance = 1e-9;
 // rad: how far beyond an optimum its cause is looked for; in yaw as far as yaws are told apart.
 constexpr double kJustBelow = 1e-6, kJustBeside = 2e-4;
+// rad: Goal::tilt_of by bisection.
+constexpr double kGoalTilt = 1e-6;
 // Scene and machine in turns: each turn raises the tilt by a step, so more turns than steps mean nothing.
 constexpr int kMostTurns = 2 * kLimitSteps;
 
@@ -106,6 +108,23 @@ CSpaceMap make_map(const Setting& setting, const CcPoint& at, int tilts, int yaw
   for (int j = 0; j < yaws; ++j)
     for (int i = 0; i < tilts; ++i) map.cells.push_back(cause_at(setting, at, map.node(i, j), memory));
   return map;
+}
+
+double Goal::tilt_of(const CcPoint& at, double value_wanted, double beta, double lo, double hi) const {
+  if (value(at, {hi, beta}) >= value_wanted) return hi;
+  if (!(value(at, {lo, beta}) >= value_wanted)) return lo;
+  while (hi - lo > kGoalTilt) {
+    const double middle = (lo + hi) / 2;
+    (value(at, {middle, beta}) >= value_wanted ? lo : hi) = middle;
+  }
+  return hi;
+}
+
+double RadiusGoal::tilt_of(const CcPoint&, double value_wanted, double beta, double lo, double hi) const {
+  const double corner = mill_->kind == model::MillKind::flat ? 0 : mill_->corner_radius;
+  if (value_wanted <= corner) return hi;
+  const auto tilt = contour_tilt(value_wanted, beta, *mill_);
+  return tilt ? std::clamp(*tilt, lo, hi) : hi;
 }
 
 double RadiusGoal::value(const CcPoint&, const Angles& angles) const {

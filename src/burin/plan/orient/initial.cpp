@@ -8,11 +8,8 @@
 namespace burin::orient {
 namespace {
 
-// Steps along the curve: allowed stretches shorter than one may be passed over where the machine's limits or
-// a single place of the part block both sides.
-constexpr int kCurveSteps = 64;
-// Places met along one curve before it is given up.
-constexpr int kMostPlaces = 200;
+// Steps along the curve: allowed stretches shorter than one may be passed over.
+constexpr int kCurveSteps = 32;
 // Yaws of the enumeration, over the whole range.
 constexpr int kEnumeratedYaws = 61;
 
@@ -28,66 +25,47 @@ class CauseCount {
   std::array<int, 5> counts_{};
 };
 
-/// The end of what `blocked(s)` says from s on: steps, then bisection; above 1: it holds up to the end.
-template <class Blocked>
-double end_of(double s, const Blocked& blocked) {
-  double in = s, out = s;
-  do {
-    if (out >= 1) return 2;
-    in = out;
-    out = std::min(1.0, out + 1.0 / kCurveSteps);
-  } while (blocked(out));
-  while (out - in > kCurveTolerance) {
-    const double middle = (in + out) / 2;
-    (blocked(middle) ? in : out) = middle;
-  }
-  return out;
-}
-
 /// What stands in the way at one pose, `known` first.
-struct Hindrance {
-  Cause cause = Cause::none;
-  std::optional<std::size_t> place;  ///< index into the relaxation
-};
-Hindrance hindrance(const Setting& setting, const CcPoint& at, const Angles& angles, Relaxation& known,
-                    Scene::Memory& memory) {
+Cause hindrance(const Setting& setting, const CcPoint& at, const Angles& angles, Relaxation& known,
+                Scene::Memory& memory) {
   const Scene& scene = *setting.scene;
-  if (const auto place = known.blocked(angles))
-    return {scene.body()[known.witness(*place).piece].cause, place};
+  if (const auto place = known.blocked(angles)) return scene.body()[known.witness(*place).piece].cause;
   const double beta = angles.alpha > kNoTilt ? angles.beta : 0;
   const Scene::FirstFree here = scene.first_free(at, beta, angles.alpha, angles.alpha, memory);
   if (!here.found) {
-    if (here.witness && known.add(*here.witness) && known.blocks(known.size() - 1, angles))
-      return {here.cause, known.size() - 1};
-    return {here.cause, std::nullopt};
+    if (here.witness) known.add(*here.witness);
+    return here.cause;
   }
-  return {setting.limits->within(pose(at, angles, scene.mill())) ? Cause::none : Cause::limit, std::nullopt};
+  return setting.limits->within(pose(at, angles, scene.mill())) ? Cause::none : Cause::limit;
 }
 
-/// The first allowed place of the curve. Jumps from end to end of what one place of the part blocks, so no
-/// allowed stretch is passed over that its own blockers leave open for a step.
+/// The first allowed place of the curve: steps from its start, which is forbidden, then bisection. What is
+/// known already spares tests but has no say in the result.
 Initial first_on(const StartCurve& curve, const Setting& setting, const CcPoint& at, Relaxation& known,
                  Scene::Memory& memory, CauseCount& causes) {
-  double s = 0;
   Initial found;
-  for (int places = 0; places < kMostPlaces && s <= 1; ++places) {
-    const Angles angles = curve.at(s);
-    const Hindrance there = hindrance(setting, at, angles, known, memory);
-    if (there.cause == Cause::none) {
-      found.found = true;
-      found.angles = angles;
-      return found;
-    }
-    causes.add(there.cause);
-    found.cause = there.cause;
-    if (there.place)
-      s = end_of(s, [&](double x) { return known.blocks(*there.place, curve.at(x)); });
-    else if (there.cause == Cause::limit)
-      s = end_of(
-          s, [&](double x) { return !setting.limits->within(pose(at, curve.at(x), setting.scene->mill())); });
-    else
-      s += 1.0 / kCurveSteps;
+  double out = 0, in = 0;
+  for (int k = 1; k <= kCurveSteps && !found.found; ++k) {
+    in = static_cast<double>(k) / kCurveSteps;
+    const Cause there = hindrance(setting, at, curve.at(in), known, memory);
+    found.found = there == Cause::none;
+    if (found.found) break;
+    found.cause = there;
+    causes.add(there);
+    out = in;
   }
+  if (!found.found) return found;
+  while (in - out > kCurveTolerance) {
+    const double middle = (in + out) / 2;
+    const Cause there = hindrance(setting, at, curve.at(middle), known, memory);
+    if (there == Cause::none) {
+      in = middle;
+    } else {
+      out = middle;
+      found.cause = there;
+    }
+  }
+  found.angles = curve.at(in);
   return found;
 }
 
@@ -127,8 +105,9 @@ Initial initial_solution(const Setting& setting, const CcPoint& at, Relaxation& 
   const AngleRange& range = setting.range;
   const Angles corner = range.widest();
   CauseCount causes;
-  const Hindrance there = hindrance(setting, at, corner, known, memory);
-  if (there.cause == Cause::none) return {true, true, corner, Cause::bound};
+  const Cause at_corner = hindrance(setting, at, corner, known, memory);
+  if (at_corner == Cause::none) return {true, true, corner, Cause::bound};
+  causes.add(at_corner);
   // The farther end of the yaws first.
   const bool low_first = corner.beta - range.beta_lo >= range.beta_hi - corner.beta;
   const std::array<double, 2> ends{low_first ? range.beta_lo : range.beta_hi,

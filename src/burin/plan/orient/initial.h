@@ -15,9 +15,10 @@ struct Initial {
   Cause cause = Cause::none;  ///< what ends the allowed set there; not found: what was met most often
 };
 /// Places that stood in the way are added to `known`; what is known already changes the tests it takes, not
-/// the result (within kCurveTolerance of the curve's parameter).
+/// the result.
 Initial initial_solution(const Setting& setting, const CcPoint& at, Relaxation& known, Scene::Memory& memory);
-inline constexpr double kCurveTolerance = 1e-9;
+/// Of the curve's parameter, 0 to 1.
+inline constexpr double kCurveTolerance = 2e-5;
 
 /// What ends the allowed set at an optimum towards greater radii, as far as one pose beyond it says.
 Cause cause_beyond(const Setting& setting, const CcPoint& at, const Angles& best, const Relaxation& known,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Best first: the most promising yaw of an upper bound is asked, what stands in the way there lowers the
-// bound.
+// Branch and bound over the yaw: the most promising yaw is asked whether it comes near the best found; what
+// stands in the way there lowers the bounds of other yaws; where it does, the yaws beside it are looked
+// through.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,13 +13,11 @@ namespace burin::orient {
 namespace {
 
 // Yaws asked at one contact point before the best found is taken.
-constexpr int kMostAsked = 300;
-// Places looked for between the end of what one blocks and the first free tilt of a yaw.
-constexpr int kMostBridges = 3;
+constexpr int kMostAsked = 400;
+// Yaws that come within this share of the best are found exactly, for the curves through them.
+constexpr double kMargin = 0.04;
 // What the next contact point gets.
 constexpr std::size_t kKeptWitnesses = 40;
-// rad: a bound that is nearer to the truth than this needs no further places.
-constexpr double kTight = 1e-7;
 
 class OptimalSearch {
  public:
@@ -26,31 +25,45 @@ class OptimalSearch {
                 Relaxation& known)
       : setting_(setting), goal_(goal), at_(at), memory_(memory), known_(known) {}
 
-  void run(Optimum& best) {
-    Envelope envelope(setting_, goal_, at_, known_);
-    for (int asked = 0; asked < kMostAsked; ++asked) {
-      const double found = best.found ? best.value : Envelope::kNever;
-      envelope.refine(found);
-      const auto top = envelope.top();
-      if (!top) break;
-      const double bound = envelope.node(*top).value;
-      if (best.found && !(best.value < (1 - kOptimumShare) * bound)) break;
-      ask(envelope, *top, best);
+  void run(Optimum& best, std::optional<double> guess) {
+    Envelope envelope(setting_, goal_, at_, known_, guess);
+    for (int asked = 0; asked < kMostAsked;) {
+      const auto open = envelope.open(gate(best));
+      if (open) {
+        ++asked;
+        ask(envelope, *open, best);
+      } else if (!best.found || !envelope.refine(best.value)) {
+        break;
+      }
     }
-    if (!best.found) best.cause = most();
+    if (!best.found && best.cause == Cause::none) best.cause = most();
   }
 
  private:
+  static double gate(const Optimum& best) {
+    return best.found ? (1 - kMargin) * best.value : Envelope::kNever;
+  }
   void count(Cause cause) { ++causes_[static_cast<std::size_t>(cause)]; }
   Cause most() const {
+    // Known places may have answered everything.
+    std::size_t best = known_.size();
+    for (std::size_t i = 0; i < known_.size(); ++i)
+      if (best == known_.size() || known_.uses(i) > known_.uses(best)) best = i;
     const auto most = std::max_element(causes_.begin(), causes_.end());
-    return *most > 0 ? static_cast<Cause>(most - causes_.begin()) : Cause::none;
+    if (*most > 0) return static_cast<Cause>(most - causes_.begin());
+    return best < known_.size() ? setting_.scene->body()[known_.witness(best).piece].cause : Cause::none;
   }
 
   void ask(Envelope& envelope, std::size_t i, Optimum& best) {
     const double beta = envelope.node(i).beta, from = envelope.node(i).alpha;
     if (beyond_limits(envelope, i)) return;
-    const Scene::FirstFree free = first_allowed(setting_, at_, beta, from, memory_);
+    // Only as far as it matters: a walk that ends blocked there names a place well inside the tool, which
+    // speaks for many yaws; one at the end of what is blocked lies on the tool's edge and speaks for few.
+    Setting near = setting_;
+    if (best.found)
+      near.range.alpha_hi = std::max(
+          from, goal_.tilt_of(at_, gate(best), beta, setting_.range.alpha_lo, setting_.range.alpha_hi));
+    const Scene::FirstFree free = first_allowed(near, at_, beta, from, memory_);
     if (free.found) {
       const double value = goal_.value(at_, {free.alpha, beta});
       if (!best.found || value > best.value) {
@@ -64,9 +77,7 @@ class OptimalSearch {
       count(free.cause);
       envelope.exclude(i);
     }
-    const double found = best.found ? best.value : Envelope::kNever;
-    if (free.witness && known_.add(*free.witness)) envelope.learn(found);
-    bridge(envelope, beta, from, free.alpha, found);
+    if (free.witness && known_.add(*free.witness)) envelope.learn(gate(best));
   }
 
   /// The machine is asked first: it costs no test.
@@ -83,17 +94,6 @@ class OptimalSearch {
       envelope.raise(i, alpha, false);
     }
     return true;
-  }
-
-  /// The walk to the first free tilt names the last place only; neighbouring yaws need those before it too.
-  void bridge(Envelope& envelope, double beta, double from, double until, double found) {
-    for (int k = 0; k < kMostBridges; ++k) {
-      const double reached = known_.first_tilt(beta, from, setting_.range.alpha_hi);
-      if (reached >= until - kTight) return;
-      const Scene::FirstFree here = setting_.scene->first_free(at_, beta, reached, reached, memory_);
-      if (here.found || !here.witness || !known_.add(*here.witness)) return;
-      envelope.learn(found);
-    }
   }
 
   const Setting& setting_;
@@ -139,7 +139,9 @@ Optimum find_optimal(const Setting& setting, const Goal& goal, const CcPoint& at
     best.value = best.initial_value = goal.value(at, initial.angles);
   }
   if (!initial.at_corner) {
-    OptimalSearch(setting, goal, at, memory, known).run(best);
+    const std::optional<double> guess =
+        experience.has_angles ? std::optional<double>(experience.angles.beta) : std::nullopt;
+    OptimalSearch(setting, goal, at, memory, known).run(best, guess);
     if (best.found && (best.cause == Cause::none || best.angles == best.initial))
       best.cause = cause_beyond(setting, at, best.angles, known, memory);
   }

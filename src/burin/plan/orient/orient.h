@@ -76,7 +76,7 @@ struct OrientPlan {
   std::vector<OrientedPath> paths;
   std::size_t contact_points = 0, unreachable = 0;
   std::uint64_t tests = 0;
-  double gain_mean = 0;               ///< mean of rho / rho_initial - 1 over points that have both
+  double gain_mean = 0;  ///< mean of rho / rho_initial - 1 over points that have both (initial above 0)
   std::vector<double> gain_per_path;  ///< the same, a path
   double axis_step_max = 0;           ///< between neighbours of a path
   double cut_mm = 0;

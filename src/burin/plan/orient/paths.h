@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,16 @@ class PathFamily {
   /// How far the neighbour at w_to lies from a contact of the path at w, measured along t on the surface;
   /// infinite where there is none abreast.
   double distance(const CcPoint& from, double w, double w_to) const;
+  /// The same for the contacts of one path in their order, with the place met. (What lay_paths measures by.)
+  struct Abreast {
+    bool found = false;
+    geom::Point3 place;   ///< on the path at w_to
+    double distance = 0;  ///< along t, on the surface
+    bool left = false;    ///< towards +t
+    /// Not found because the trims' border lies between: its distance; else infinite.
+    double border = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Abreast> abreast(const std::vector<CcPoint>& from, double w, double w_to) const;
   /// Largest distance between the paths at the two ends of the family over all stations: a length of the
   /// whole.
   double extent() const;

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "burin/plan/orient/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "burin/plan/orient/scene_kernels.h"
+#include "burin/plan/orient/scene_piece.h"
+#include "burin/plan/orient/scene_tree.h"
+#include "burin/plan/orient/scene_turn.h"
+
+namespace burin::orient {
+
+using detail::Corners;
+using detail::Local;
+using detail::Piece;
+using detail::Place;
+using detail::Turn;
+using geom::Point3;
+using geom::Vec3;
+
+namespace {
+
+/// A touch is not an interference, and rounding may not make it one: pieces are smaller by this share of the
+/// largest coordinate, at least of a metre (half of what the header promises).
+constexpr double kTouch = 5e-13;
+/// Tilts that first_free answers: multiples of this (rad). The answer is then the same whichever blockers
+/// were met on the way to it.
+constexpr double kGrid = 1.0 / (1U << 31U);
+
+double grid_above(double a) {
+  return std::ceil(a / kGrid) * kGrid;
+}
+
+/// The tool's frame at a pose.
+struct Frame {
+  Point3 p;
+  Vec3 ex, ey, u;
+  explicit Frame(const cl::Pose& pose) : p(pose.tip), u(pose.axis) {
+    // Duff et al. 2017: any two directions across the axis, without a case that loses digits.
+    const double sign = std::copysign(1.0, u.z), a = -1 / (sign + u.z), b = u.x * u.y * a;
+    ex = {1 + sign * u.x * u.x * a, sign * b, -sign * u.x};
+    ey = {b, sign + u.y * u.y * a, -u.y};
+  }
+  Local at(const Point3& q) const {
+    const Vec3 v = q - p;
+    return {dot(v, ex), dot(v, ey), dot(v, u)};
+  }
+};
+
+}  // namespace
+
+struct Scene::State {
+  model::Mill mill;
+  std::vector<BodyPiece> body;
+  std::vector<Piece> pieces;
+  std::size_t gouging = 0;  ///< pieces before this one gouge
+  detail::SceneTree tree;
+  std::size_t triangles = 0;
+  const detail::SceneKernels* kernels = nullptr;
+  std::vector<detail::SceneQuery> queries;  ///< the pieces, kScenePieces each; tip and axis to be filled in
+
+  std::array<Point3, 3> corners(std::uint32_t triangle) const {
+    const std::uint32_t place = tree.place[triangle];
+    return tree.packets[place / 4].corners(static_cast<int>(place % 4));
+  }
+  bool blocks(const Blocker& b, const Frame& frame) const {
+    const auto c = corners(b.triangle);
+    return meets({frame.at(c[0]), frame.at(c[1]), frame.at(c[2])}, pieces[b.piece]);
+  }
+  void add_queries();
+  template <class Met>
+  bool walk(std::size_t batch, unsigned mask, Frame& frame, const Met& met) const;
+  template <class Met>
+  bool ask(std::size_t count, Frame& frame, Memory& memory, const Met& met) const;
+  std::optional<Blocker> blocker(const cl::Pose& pose, std::size_t count, Memory& memory) const;
+};
+
+Scene::Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPiece> body)
+    : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.mill = mill;
+  s.body = std::move(body);
+  s.tree = detail::build_scene_tree(mesh);
+  s.triangles = mesh.triangles.size();
+  s.kernels = &detail::scene_kernels_avx2();
+  double scale = 1000;
+  for (const Point3& q : mesh.vertices)
+    scale = std::max({scale, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
+  const double touch = kTouch * scale;
+  while (s.gouging < s.body.size() && s.body[s.gouging].cause == Cause::gouge) ++s.gouging;
+  for (const BodyPiece& p : s.body) {
+    if (p.grow > touch)
+      s.pieces.push_back({p.radius, p.from, p.to, p.grow - touch});
+    else
+      s.pieces.push_back({p.radius - touch, p.from + touch, p.to - touch, 0});
+  }
+  s.add_queries();
+}
+
+void Scene::State::add_queries() {
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const auto k = static_cast<int>(i % detail::kScenePieces);
+    if (k == 0) queries.emplace_back();
+    detail::SceneQuery& q = queries.back();
+    const Piece& p = pieces[i];
+    q.count = k + 1;
+    q.middle[k] = static_cast<float>(0.5 * (p.from + p.to));
+    q.half[k] = static_cast<float>(0.5 * (p.to - p.from));
+    q.radius[k] = static_cast<float>(p.radius);
+    q.grow[k] = static_cast<float>(p.grow);
+    q.size = std::max(
+        q.size, static_cast<float>(1.001 * (std::max(std::abs(p.from), std::abs(p.to)) + p.radius + p.grow)));
+  }
+}
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+namespace {
+
+/// To the front of the memory.
+void remember(const Blocker& b, Scene::Memory& memory) {
+  auto* end = memory.last.begin() + memory.count;
+  auto* it = std::find(memory.last.begin(), end, b);
+  if (it == end) {
+    if (memory.count < static_cast<int>(memory.last.size()))
+      ++memory.count;
+    else
+      --it;
+  }
+  std::move_backward(memory.last.begin(), it, it + 1);
+  memory.last[0] = b;
+}
+
+}  // namespace
+
+/// All triangles that may meet the pieces of one batch (bits of `mask`), the likeliest first. met(triangle,
+/// corners, piece) is told of those that do; it may move the frame (the walk goes on with it), and ends the
+/// walk by true.
+template <class Met>
+bool Scene::State::walk(std::size_t batch, unsigned mask, Frame& frame, const Met& met) const {
+  struct Task {
+    int child;
+    unsigned pieces;
+    float outside;
+  };
+  std::array<Task, detail::kSceneStack> todo;
+  detail::SceneQuery query = queries[batch];
+  const auto aim = [&] {
+    query.tip[0] = frame.p.x, query.tip[1] = frame.p.y, query.tip[2] = frame.p.z;
+    query.axis[0] = static_cast<float>(frame.u.x);
+    query.axis[1] = static_cast<float>(frame.u.y);
+    query.axis[2] = static_cast<float>(frame.u.z);
+  };
+  aim();
+  std::size_t n = 0;
+  todo[n++] = {0, mask, 0};
+  while (n > 0) {
+    const Task task = todo[--n];
+    if (task.child >= 0) {
+      const detail::SceneNode& node = tree.nodes[static_cast<std::size_t>(task.child)];
+      detail::SceneHits hits;
+      kernels->boxes(node, query, task.pieces, hits);
+      unsigned any = 0;
+      for (int k = 0; k < query.count; ++k) any |= hits.hit[k];
+      const std::size_t base = n;
+      while (any != 0) {
+        const int lane = __builtin_ctz(any);
+        any &= any - 1;
+        Task t{node.child[lane], 0, hits.outside[lane]};
+        for (int k = 0; k < query.count; ++k) t.pieces |= (hits.hit[k] >> lane & 1U) << k;
+        std::size_t i = n++;
+        for (; i > base && todo[i - 1].outside < t.outside; --i) todo[i] = todo[i - 1];
+        todo[i] = t;
+      }
+      continue;
+    }
+    const detail::ScenePacket& packet = tree.packets[static_cast<std::size_t>(~task.child)];
+    for (int lane = 0; lane < 4; ++lane) {
+      if (lane > 0 && packet.triangle[lane] == packet.triangle[lane - 1]) break;
+      const auto c = packet.corners(lane);
+      Corners t{frame.at(c[0]), frame.at(c[1]), frame.at(c[2])};
+      for (unsigned left = task.pieces; left != 0; left &= left - 1) {
+        const std::size_t piece =
+            batch * detail::kScenePieces + static_cast<std::size_t>(__builtin_ctz(left));
+        if (!meets(t, pieces[piece])) continue;
+        if (met(Blocker{packet.triangle[lane], static_cast<std::uint8_t>(piece)}, frame)) return true;
+        t = {frame.at(c[0]), frame.at(c[1]), frame.at(c[2])};
+        aim();
+      }
+    }
+  }
+  return false;
+}
+
+/// Memory first, then the tree, for the first `count` pieces.
+template <class Met>
+bool Scene::State::ask(std::size_t count, Frame& frame, Memory& memory, const Met& met) const {
+  ++memory.tests;
+  const Memory before = memory;
+  for (int i = 0; i < before.count; ++i) {
+    const Blocker b = before.last[static_cast<std::size_t>(i)];
+    if (b.triangle < triangles && tree.place[b.triangle] != detail::kNoPlace && b.piece < count &&
+        blocks(b, frame) && met(b, frame))
+      return true;
+  }
+  if (tree.nodes.empty()) return false;
+  for (std::size_t batch = 0; batch * detail::kScenePieces < count; ++batch) {
+    const std::size_t n = std::min<std::size_t>(count - batch * detail::kScenePieces, detail::kScenePieces);
+    if (walk(batch, (1U << n) - 1, frame, met)) return true;
+  }
+  return false;
+}
+
+std::optional<Blocker> Scene::State::blocker(const cl::Pose& pose, std::size_t count, Memory& memory) const {
+  std::optional<Blocker> out;
+  Frame frame(pose);
+  ask(count, frame, memory, [&](const Blocker& b, Frame&) {
+    out = b;
+    remember(b, memory);
+    return true;
+  });
+  return out;
+}
+
+std::optional<Blocker> Scene::blocker(const cl::Pose& pose, Memory& memory) const {
+  return state_->blocker(pose, state_->pieces.size(), memory);
+}
+
+Cause Scene::cause(const cl::Pose& pose, Memory& memory) const {
+  const State& s = *state_;
+  const auto first = s.blocker(pose, s.pieces.size(), memory);
+  if (!first) return Cause::none;
+  if (s.body[first->piece].cause == Cause::gouge) return Cause::gouge;
+  return s.gouging > 0 && s.blocker(pose, s.gouging, memory) ? Cause::gouge : s.body[first->piece].cause;
+}
+
+Scene::FirstFree Scene::first_free(const CcPoint& at, double beta, double from, double to,
+                                   Memory& memory) const {
+  const State& s = *state_;
+  const Turn turn(at, beta, s.mill);
+  const auto frame_at = [&](double a) { return Frame(pose(at, {a, beta}, s.mill)); };
+  FirstFree out;
+  double alpha = from, blocked = from, stall = kGrid;
+  std::optional<Blocker> last;
+  bool over = false;
+  // The tilt only grows: each blocker moves it to the end of what that triangle blocks.
+  const auto met = [&](const Blocker& b, Frame& frame) {
+    do {
+      const auto c = s.corners(b.triangle);
+      const auto left =
+          turn.until({turn.place(c[0]), turn.place(c[1]), turn.place(c[2])}, s.pieces[b.piece], alpha, to);
+      last = b;
+      out.witness = Witness{turn.point(left.last), b.piece};
+      blocked = alpha;
+      if (alpha >= to) return over = true;
+      stall = left.alpha > alpha ? kGrid : std::min(2 * stall, kLeastGap);
+      alpha = std::min(std::max(grid_above(left.alpha), grid_above(alpha + 0.5 * stall)), to);
+      frame = frame_at(alpha);
+    } while (s.blocks(b, frame));
+    return false;
+  };
+  for (double before = -1; alpha != before && !over;) {
+    before = alpha;
+    Frame frame = frame_at(alpha);
+    s.ask(s.pieces.size(), frame, memory, met);
+  }
+  if (last) remember(*last, memory);
+  out.found = !over;
+  // The same answer by any way: the place of the grid before it is blocked.
+  while (out.found && last && alpha - blocked > 1.5 * kGrid) {
+    const double before = grid_above(alpha - 1.25 * kGrid);
+    if (!(before > blocked && before < alpha) || s.blocks(*last, frame_at(before))) break;
+    if (s.blocker(pose(at, {before, beta}, s.mill), s.pieces.size(), memory)) break;
+    alpha = before;
+  }
+  out.alpha = alpha;
+  if (last) out.cause = s.body[last->piece].cause;
+  return out;
+}
+
+bool Scene::blocks(const Witness& witness, const cl::Pose& pose) const {
+  const State& s = *state_;
+  return witness.piece < s.pieces.size() &&
+         detail::excess(Frame(pose).at(witness.q), s.pieces[witness.piece]) < 0;
+}
+
+double Scene::blocked_until(const Witness& witness, const CcPoint& at, double beta, double alpha,
+                            double to) const {
+  const State& s = *state_;
+  if (witness.piece >= s.pieces.size()) return alpha;
+  const Turn turn(at, beta, s.mill);
+  return turn.until(turn.place(witness.q), s.pieces[witness.piece], alpha, to);
+}
+
+const model::Mill& Scene::mill() const {
+  return state_->mill;
+}
+const std::vector<BodyPiece>& Scene::body() const {
+  return state_->body;
+}
+std::size_t Scene::triangle_count() const {
+  return state_->triangles;
+}
+
+}  // namespace burin::orient
