@@ -37,6 +37,10 @@ struct OrientRun {
   std::optional<post::NcText> nc;
 };
 
+/// Share of the tolerance by which the tip may leave the tool path between two blocks: what the poses may
+/// gouge is the whole tolerance already.
+constexpr double kJointShare = 0.1;
+
 // --- points.csv
 
 std::string number(double value) {
@@ -224,8 +228,8 @@ Json comparison_json(const orient::Comparison& c) {
           {"cut_mm", c.cut_mm},       {"cut_min", c.minutes}};
 }
 
-void fill_report(const OrientSetup& setup, const OrientRun& run,
-                 const std::optional<verify::MillCheckReport>& check, Session& session) {
+void fill_report(const OrientSetup& setup, const OrientRun& run, const std::optional<job::OrientCheck>& check,
+                 Session& session) {
   const orient::OrientPlan& plan = run.plan;
   Report& r = session.report;
   r.parameters = parameters(setup, session.common.dialect);
@@ -257,9 +261,8 @@ void fill_report(const OrientSetup& setup, const OrientRun& run,
                {"gouge_max_mm", check ? Json(check->gouge_max_mm()) : Json(nullptr)}};
   if (check) {
     r.quality["gouge_cutter_mm"] = check->cutter.mm;
-    r.quality["gouge_shank_mm"] = check->shank.mm;
     r.quality["gouge_holder_mm"] = check->holder.mm;
-    r.quality["bound_mm"] = check->bound_mm + setup.part.deflection_mm;
+    r.quality["bound_mm"] = check->bound_mm;
   }
   if (setup.file.options.smooth) {
     r.quality["smooth_loss_mean"] = loss;
@@ -279,19 +282,31 @@ void fill_report(const OrientSetup& setup, const OrientRun& run,
 }
 
 /// What the independent check found beyond the tolerance.
-void warn_of_gouge(const OrientSetup& setup, const verify::MillCheckReport& check, Session& session) {
+void warn_of_gouge(const OrientSetup& setup, const job::OrientCheck& check, Session& session) {
   const auto say = [&](const verify::MillFinding& found, const char* what, double allowed) {
     if (found.mm <= allowed + check.bound_mm) return;
     session.diagnostics.add({Severity::left_out,
                              "gouge",
                              std::string("the ") + what + " gets " + format_fixed(found.mm, 4) +
-                                 " mm into the part at move " + std::to_string(found.move),
+                                 " mm into the part at record " + std::to_string(found.move) +
+                                 " of the CL data",
                              {},
                              std::array{found.at.x, found.at.y, found.at.z}});
   };
-  say(check.cutter, "cutting body", setup.file.options.tolerance_mm);
-  say(check.shank, "shank", 0);
-  say(check.holder, "holder", 0);
+  say(check.cutter, "cutting body", (1 + kJointShare) * setup.file.options.tolerance_mm);
+  say(check.holder, "shank, holder or head", 0);
+}
+
+/// The motion as it will run, by code that shares nothing with the planner.
+Result<job::OrientCheck> check_motion(const OrientArgs& args, const OrientSetup& setup, const OrientRun& run,
+                                      const Session& session) {
+  // A hundredth of the tolerance each: what is found is then right to a percent or so.
+  const double share = 0.01 * setup.file.options.tolerance_mm;
+  const job::OrientCheckOptions options{share, share, static_cast<unsigned>(session.common.threads)};
+  if (run.path.program.move_count() == 0) return job::OrientCheck{};
+  if (run.joints && !args.tcp)
+    return job::check_orient_job(setup.part, setup.file.mill, *setup.machine, *run.joints, options);
+  return job::check_orient_job(setup.part, setup.file.mill, run.path.program, options);
 }
 
 // --- pictures
@@ -389,7 +404,7 @@ Result<void> make_motion(const OrientArgs& args, const OrientSetup& setup, const
     return {};
   }
   kinematics::JointPathOptions joints;
-  joints.tolerance_mm = o.tolerance_mm;
+  joints.tolerance_mm = kJointShare * o.tolerance_mm;
   auto joint_path = kinematics::make_joint_path(*setup.machine, run.path.program, joints);
   if (!joint_path) return joint_path.error();
   run.joints = std::move(*joint_path);
@@ -457,12 +472,9 @@ Result<void> run_orient(const OrientArgs& args, Session& session) {
   if (auto ok = judge(args, *setup, run.plan, session); !ok) return in_file(ok.error());
   if (auto ok = make_motion(args, *setup, scene, limits, *dialect, !names->nc.empty(), run, session); !ok)
     return in_file(ok.error());
-  std::optional<verify::MillCheckReport> check;
+  std::optional<job::OrientCheck> check;
   if (!session.common.json.empty() || !session.common.html.empty()) {
-    auto checked = job::check_orient_motion(
-        setup->part, setup->file.mill, run.path.program, setup->machine_or_null(),
-        run.joints && !args.tcp ? &*run.joints : nullptr, setup->file.options.tolerance_mm,
-        static_cast<unsigned>(session.common.threads));
+    auto checked = check_motion(args, *setup, run, session);
     if (!checked) return in_file(checked.error());
     check = std::move(*checked);
     warn_of_gouge(*setup, *check, session);
