@@ -80,7 +80,9 @@ Result<std::size_t> find_path(const Paths& paths, int number) {
 }
 
 /// The point asked for, with its angles as `burin orient` finds them along its path.
-Result<orient::OrientedPoint> find_point(const CSpaceArgs& args, const OrientSetup& setup, Session& session) {
+Result<orient::OrientedPoint> find_point(const CSpaceArgs& args, const OrientSetup& setup,
+                                         const orient::Scene& scene, const orient::MachineLimits& limits,
+                                         Session& session) {
   std::vector<orient::CcPath> contacts;
   if (!setup.contacts.empty()) {  // paths of a file are worked out on their own
     const auto at = find_path(setup.contacts, args.path);
@@ -88,7 +90,7 @@ Result<orient::OrientedPoint> find_point(const CSpaceArgs& args, const OrientSet
     contacts = {setup.contacts[*at]};
   }
   const auto workers = session.workers();
-  auto plan = orient::plan(setup.part, setup.file.mill, contacts, setup.machine_or_null(), setup.file.options,
+  auto plan = orient::plan(setup.part, scene, limits, contacts, setup.machine_or_null(), setup.file.options,
                            *workers, session.diagnostics, session.progress());
   if (!plan) return plan.error();
   if (plan->paths.empty())
@@ -151,12 +153,12 @@ Result<void> run_cspace(const CSpaceArgs& args, Session& session) {
     if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.job;
     return error;
   };
-  auto point = find_point(args, *setup, session);
+  const orient::Scene scene = setup->scene();
+  const orient::MachineLimits limits = setup->limits();
+  auto point = find_point(args, *setup, scene, limits, session);
   session.end_progress();
   session.diagnostics.locate(args.job);
   if (!point) return in_file(point.error());
-  const orient::Scene scene = setup->scene();
-  const orient::MachineLimits limits = setup->limits();
   const model::Mill& mill = setup->file.mill;
   orient::Scene::Memory memory;
   const orient::CSpaceMap map = orient::make_map(orient::setting_of(scene, limits, setup->file.options),

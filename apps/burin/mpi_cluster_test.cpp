@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Run by mpirun with several processes (tests/mpi_test.py): each checks what it has got.
+// Run by mpirun with several processes (tests/CMakeLists.txt): each checks what it has got.
 #include <chrono>
 #include <cstdio>
 #include <new>

@@ -423,15 +423,15 @@ Result<void> run_orient(const OrientArgs& args, Session& session) {
     return error;
   };
   const auto workers = session.workers();
-  auto plan = orient::plan(setup->part, setup->file.mill, setup->contacts, setup->machine_or_null(),
+  const orient::Scene scene = setup->scene();
+  const orient::MachineLimits limits = setup->limits();
+  auto plan = orient::plan(setup->part, scene, limits, setup->contacts, setup->machine_or_null(),
                            setup->file.options, *workers, session.diagnostics, session.progress());
   if (!plan) return in_file(plan.error());
   if (!session.first()) return {};
   OrientRun run;
   run.plan = std::move(*plan);
   if (auto ok = judge(args, *setup, run.plan, session); !ok) return in_file(ok.error());
-  const orient::Scene scene = setup->scene();
-  const orient::MachineLimits limits = setup->limits();
   if (auto ok = make_motion(args, *setup, scene, limits, *dialect, !names->nc.empty(), run, session); !ok)
     return in_file(ok.error());
   session.end_progress();

@@ -92,7 +92,8 @@ class Loader {
       : job_(job), folder_(std::move(folder)), read_(read), diagnostics_(diagnostics) {}
 
   Result<orient::Part> load() {
-    if (auto ok = std::visit([this](const auto& part) { return add(part); }, job_.part); !ok) return ok.error();
+    if (auto ok = std::visit([this](const auto& part) { return add(part); }, job_.part); !ok)
+      return ok.error();
     part_.design_triangles = part_.mesh.triangles.size();
     if (part_.design_triangles == 0)
       return Error{ErrorCode::geometry, "the design surface has no triangles (faces with an area)", {}};

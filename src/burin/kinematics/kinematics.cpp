@@ -181,8 +181,8 @@ Kinematics::Turns Kinematics::turns_to(Vec3 u) const {
   return turns;
 }
 
-Joints Kinematics::with_linear(const cl::Pose& pose, const std::array<double, 2>& rotary) const {
-  const Point3 p = to_machine(pose.tip, rotary);
+Joints Kinematics::with_rotary(const Point3& tip, const std::array<double, 2>& rotary) const {
+  const Point3 p = to_machine(tip, rotary);
   const Vec3 offset = machine_.pivot_length * (head_axis(rotary) - kUp);
   return {{p.x + offset.x, p.y + offset.y, p.z + offset.z}, rotary};
 }
@@ -195,7 +195,7 @@ Solutions Kinematics::inverse_all(const cl::Pose& pose, const Joints& free) cons
   for (std::size_t i = 0; i < static_cast<std::size_t>(solutions.count); ++i) {
     for (std::size_t k = 0; k < 2; ++k)
       if (turns.free[k]) turns.angles[i][k] = free.rotary[k];
-    solutions.joints[i] = with_linear(pose, turns.angles[i]);
+    solutions.joints[i] = with_rotary(pose.tip, turns.angles[i]);
   }
   return solutions;
 }
@@ -223,7 +223,7 @@ Result<Joints> Kinematics::inverse(const cl::Pose& pose, const Joints& near) con
       rotary = angles;
     }
   }
-  return with_linear(pose, rotary);
+  return with_rotary(pose.tip, rotary);
 }
 
 std::optional<LimitViolation> Kinematics::violation(const Joints& joints) const {

@@ -63,6 +63,9 @@ class Kinematics {
   /// checked unless a whole turn less or more keeps them; see violation().
   Result<Joints> inverse(const cl::Pose& pose, const Joints& near) const;
 
+  /// The joints that hold the tip there with the rotary axes at these angles.
+  Joints with_rotary(const geom::Point3& tip, const std::array<double, 2>& rotary) const;
+
   /// The first axis beyond its limits, by more than rounding.
   std::optional<LimitViolation> violation(const Joints& joints) const;
 
@@ -78,7 +81,6 @@ class Kinematics {
     std::array<bool, 2> free{};
   };
   Turns turns_to(geom::Vec3 u) const;
-  Joints with_linear(const cl::Pose& pose, const std::array<double, 2>& rotary) const;
 
   model::Machine machine_;
   int rotary_count_ = 0;

@@ -24,8 +24,8 @@ constexpr int kStations = 33;         ///< sections of a blade
 constexpr double kEdgeShare = 0.1;    ///< edge thickness over the greatest thickness of the section
 /// Handles of the cubic that rounds an edge, over the edge's thickness: those of a half circle.
 constexpr double kRound = 2.0 / 3;
-constexpr double kHubMargin = 1.1;    ///< height of the hub over what the blade's root needs
-constexpr double kBladeGap = 1.02;    ///< distance of neighbouring blades at the hub over their thickness
+constexpr double kHubMargin = 1.1;  ///< height of the hub over what the blade's root needs
+constexpr double kBladeGap = 1.02;  ///< distance of neighbouring blades at the hub over their thickness
 
 struct Range {
   double lo, hi;
@@ -64,7 +64,7 @@ struct Placing {
 struct Grids {
   std::vector<double> u, v;
   geom::PointGrid face, back;
-  double lowest = 0, highest = 0;  ///< z of the root
+  double lowest = 1e300, highest = -1e300;  ///< z of the root
 };
 
 /// Radii that make the chord a smooth function of v up to the round tip.
@@ -122,7 +122,8 @@ Result<NurbsSurface> rounded_edge(const NurbsSurface& from, const NurbsSurface& 
   for (const double at : v) {
     const auto a = geom::derivatives(from, u, at), b = geom::derivatives(to, u, at);
     const double handle = kRound * geom::distance(a.p, b.p);
-    const Point3 p1 = a.p + outward * handle * geom::unit(a.du), p2 = b.p + outward * handle * geom::unit(b.du);
+    const Point3 p1 = a.p + outward * handle * geom::unit(a.du),
+                 p2 = b.p + outward * handle * geom::unit(b.du);
     for (const double t : s) {
       const double m = 1 - t;
       grid.points.push_back(Point3{} + (m * m * m * (a.p - Point3{}) + 3 * m * m * t * (p1 - Point3{}) +
@@ -190,7 +191,8 @@ Result<Propeller> make_propeller(const PropellerData& data) {
   out.leading_edge = *std::move(leading), out.trailing_edge = *std::move(trailing);
   out.hub_radius = 0.5 * data.hub_ratio * data.diameter;
   out.tip_radius = 0.5 * kOutermost * data.diameter;
-  out.hub_height = 2 * kHubMargin * std::max(-grids->lowest, grids->highest);
+  out.hub_height = kHubMargin * (grids->highest - grids->lowest);
+  out.hub_bottom = 0.5 * (grids->highest + grids->lowest - out.hub_height);
   return out;
 }
 

@@ -37,7 +37,8 @@ struct Propeller {
   bool other_reversed = false;
   /// The rounded edges; u from the side to the other side.
   geom::NurbsSurface leading_edge, trailing_edge;
-  double hub_radius = 0, hub_height = 0, tip_radius = 0;  ///< the outline's last r / R is below 1: no pole
+  double hub_radius = 0, tip_radius = 0;  ///< the outline's last r / R is below 1: no pole
+  double hub_bottom = 0, hub_height = 0;  ///< z of its lower end; a little more than the blades' roots need
 };
 /// r / R = hub_ratio .. 0.975, sections interpolated between those of the tables. Error (range): validate();
 /// (geometry) blades that touch each other at the hub.
@@ -55,7 +56,7 @@ struct BladeSection {
 BladeSection blade_section(const PropellerData& data, double radius_ratio);
 
 /// Closed mesh of all blades but blade 0, both sides with edges and tips, within the deflection; and the hub
-/// (a closed cylinder from -hub_height / 2 to hub_height / 2).
+/// (a closed cylinder).
 geom::Mesh neighbour_blades(const PropellerData& data, const Propeller& propeller, double deflection_mm);
 geom::Mesh hub_mesh(const PropellerData& data, const Propeller& propeller, double deflection_mm);
 /// The part of blade 0 that is not milled: other side, edges, tip, the end in the hub.

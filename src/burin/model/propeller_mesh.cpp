@@ -22,7 +22,8 @@ constexpr std::size_t kMostTriangles = 2'000'000;
 constexpr int kFewestSides = 24, kMostSides = 20000;  ///< of the hub
 
 /// Lines over the spans of the knots, in each as many as the surface that needs most.
-std::vector<double> common_lines(const std::vector<double>& knots, const std::vector<std::vector<double>>& each) {
+std::vector<double> common_lines(const std::vector<double>& knots,
+                                 const std::vector<std::vector<double>>& each) {
   std::vector<double> ends = knots, out;
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
@@ -73,7 +74,9 @@ BladeMesh blade_mesh(const Propeller& blade, double deflection_mm) {
     for (const auto* part : {&a, &b, &c, &d})
       out.mesh.vertices.insert(out.mesh.vertices.end(), part->begin(), part->end() - 1);
   }
-  const auto at = [ring](std::size_t i, std::size_t j) { return static_cast<std::uint32_t>(i % ring + j * ring); };
+  const auto at = [ring](std::size_t i, std::size_t j) {
+    return static_cast<std::uint32_t>(i % ring + j * ring);
+  };
   auto& triangles = out.mesh.triangles;
   const auto strip = [&](std::size_t first, std::size_t end) {
     for (std::size_t j = 0; j + 1 < v.size(); ++j) {
@@ -131,14 +134,15 @@ Mesh hub_mesh(const PropellerData&, const Propeller& propeller, double deflectio
   const int n = wanted < kMostSides ? std::max(kFewestSides, static_cast<int>(wanted)) : kMostSides;
   const auto count = static_cast<std::uint32_t>(n);
   Mesh mesh;
-  for (const double z : {-0.5 * propeller.hub_height, 0.5 * propeller.hub_height}) {
+  const double bottom = propeller.hub_bottom, top = bottom + propeller.hub_height;
+  for (const double z : {bottom, top}) {
     for (int i = 0; i < n; ++i) {
       const double a = 2 * geom::kPi * i / n;
       mesh.vertices.push_back({r * std::cos(a), r * std::sin(a), z});
     }
   }
-  mesh.vertices.push_back({0, 0, -0.5 * propeller.hub_height});
-  mesh.vertices.push_back({0, 0, 0.5 * propeller.hub_height});
+  mesh.vertices.push_back({0, 0, bottom});
+  mesh.vertices.push_back({0, 0, top});
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t k = (i + 1) % count;
     mesh.triangles.push_back({i, k, count + k});

@@ -68,26 +68,14 @@ Cubic Cubic::spline(std::vector<double> x, std::vector<double> y) {
 }
 
 Cubic Cubic::monotone(std::vector<double> x, std::vector<double> y) {
-  const std::size_t n = x.size();
-  Cubic out;
-  out.slope_.assign(n, 0.0);
-  const auto h = [&](std::size_t i) { return x[i + 1] - x[i]; };
-  const auto m = [&](std::size_t i) { return (y[i + 1] - y[i]) / h(i); };
-  for (std::size_t i = 1; i + 1 < n; ++i) {
-    const double left = m(i - 1), right = m(i);
-    if (left * right <= 0) continue;
-    const double w = 2 * h(i) + h(i - 1), v = h(i) + 2 * h(i - 1);
-    out.slope_[i] = (w + v) / (w / left + v / right);
+  Cubic out = spline(std::move(x), std::move(y));
+  const std::size_t n = out.x_.size();
+  const auto m = [&](std::size_t i) { return (out.y_[i + 1] - out.y_[i]) / (out.x_[i + 1] - out.x_[i]); };
+  for (std::size_t i = 0; i < n; ++i) {
+    const double left = m(i > 0 ? i - 1 : 0), right = m(i + 1 < n ? i : n - 2);
+    const double most = left * right > 0 ? 3 * std::min(std::abs(left), std::abs(right)) : 0;
+    out.slope_[i] = left > 0 ? std::clamp(out.slope_[i], 0.0, most) : std::clamp(out.slope_[i], -most, 0.0);
   }
-  // Three points at the ends, as far as the first piece stays monotone.
-  const auto end = [](double h0, double h1, double m0, double m1) {
-    const double slope = ((2 * h0 + h1) * m0 - h0 * m1) / (h0 + h1);
-    if (slope * m0 <= 0) return 0.0;
-    return std::abs(slope) > 3 * std::abs(m0) ? 3 * m0 : slope;
-  };
-  out.slope_[0] = end(h(0), h(1), m(0), m(1));
-  out.slope_[n - 1] = end(h(n - 2), h(n - 3), m(n - 2), m(n - 3));
-  out.x_ = std::move(x), out.y_ = std::move(y);
   return out;
 }
 
@@ -112,7 +100,8 @@ Result<Series> Series::parse(std::string_view toml) {
   series.pitch_four_ = Cubic::monotone(radius, numbers(reader, outline, "pitch_four", n));
   const auto read_outline = [&](std::string_view name) {
     const toml::table& table = reader.subtable(outline, name);
-    std::vector<double> chord = numbers(reader, table, "chord", n), middle = numbers(reader, table, "leading", n);
+    std::vector<double> chord = numbers(reader, table, "chord", n),
+                        middle = numbers(reader, table, "leading", n);
     std::vector<double> thickest = numbers(reader, table, "thickest", n), inner = radius;
     for (std::size_t i = 0; i < n; ++i) middle[i] = (middle[i] - 0.5) * chord[i];
     // The outline is round at the tip: chord / sqrt(1 - r / R) is smooth there. The ratios mean nothing at r
@@ -120,7 +109,8 @@ Result<Series> Series::parse(std::string_view toml) {
     inner.pop_back(), chord.pop_back(), middle.pop_back();
     for (std::size_t i = 0; i + 1 < n; ++i) chord[i] /= std::sqrt(1 - inner[i]);
     thickest.back() = thickest[n - 2];
-    return Outline{Cubic::spline(inner, chord), Cubic::spline(inner, middle), Cubic::monotone(radius, thickest)};
+    return Outline{Cubic::spline(inner, chord), Cubic::spline(inner, middle),
+                   Cubic::monotone(radius, thickest)};
   };
   series.three_ = read_outline("three");
   series.more_ = read_outline("more");
@@ -133,8 +123,10 @@ Result<Series> Series::parse(std::string_view toml) {
   std::vector<std::vector<double>> v1(places), v2(places);
   for (const toml::table* table : reader.tables(section, "at")) {
     at.push_back(reader.number(*table, "radius", 0, 1));
-    const std::vector<double> a = numbers(reader, *table, "v1", places), b = numbers(reader, *table, "v2", places);
-    for (std::size_t i = 0; i < places; ++i) v1[i].push_back(a[places - 1 - i]), v2[i].push_back(b[places - 1 - i]);
+    const std::vector<double> a = numbers(reader, *table, "v1", places),
+                              b = numbers(reader, *table, "v2", places);
+    for (std::size_t i = 0; i < places; ++i)
+      v1[i].push_back(a[places - 1 - i]), v2[i].push_back(b[places - 1 - i]);
   }
   if (at.size() < 4) reader.fail(section, "fewer than four sections");
   if (reader.error()) return *reader.error();

@@ -16,7 +16,8 @@ class Cubic {
   /// Two continuous derivatives, no jump of the third at the first and last inner place ("not a knot"). At
   /// least four places.
   static Cubic spline(std::vector<double> x, std::vector<double> y);
-  /// One continuous derivative, never beyond the neighbouring places (Fritsch & Butland 1984).
+  /// The same with slopes cut down where it would go beyond neighbouring places (Hyman 1983): one continuous
+  /// derivative there, two elsewhere.
   static Cubic monotone(std::vector<double> x, std::vector<double> y);
   double operator()(double x) const;
 
@@ -26,11 +27,11 @@ class Cubic {
 
 /// One row of the section tables at any radius; offsets by place along the chord, from the leading edge.
 struct SeriesAt {
-  double chord = 0;     ///< c / D * Z / (Ae / Ao)
-  double middle = 0;    ///< generator line to mid chord, towards the leading edge, in the same unit
-  double thickest = 0;  ///< leading edge to greatest thickness, over the chord
-  double thickness = 0; ///< t_max / D
-  double pitch = 1;     ///< share of the nominal pitch
+  double chord = 0;      ///< c / D * Z / (Ae / Ao)
+  double middle = 0;     ///< generator line to mid chord, towards the leading edge, in the same unit
+  double thickest = 0;   ///< leading edge to greatest thickness, over the chord
+  double thickness = 0;  ///< t_max / D
+  double pitch = 1;      ///< share of the nominal pitch
   std::vector<double> v1, v2;
 };
 

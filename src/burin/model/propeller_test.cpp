@@ -16,8 +16,9 @@ TEST(Propeller, SectionsAtTheRadiiOfTheTablesAreTheTables) {
   struct Row {
     double radius, chord, leading, thickest, a, b;
   };
-  for (const Row& row : {Row{0.2, 1.662, 0.617, 0.35, 0.0526, 0.004}, Row{0.5, 2.152, 0.586, 0.355, 0.034, 0.0025},
-                         Row{0.9, 1.582, 0.351, 0.5, 0.0092, 0.0005}}) {
+  for (const Row& row :
+       {Row{0.2, 1.662, 0.617, 0.35, 0.0526, 0.004}, Row{0.5, 2.152, 0.586, 0.355, 0.034, 0.0025},
+        Row{0.9, 1.582, 0.351, 0.5, 0.0092, 0.0005}}) {
     const BladeSection s = blade_section(data, row.radius);
     const double chord = row.chord * 1000 * 0.75 / 5;
     EXPECT_NEAR(s.chord, chord, 1e-9);
@@ -120,7 +121,8 @@ TEST(Propeller, SaysWhatItDoesNotTake) {
     return p.ok() ? std::string("fine") : p.error().message;
   };
   EXPECT_EQ(message([](PropellerData& d) { d.blades = 8; }), "the number of blades is 8 (2 to 7)");
-  EXPECT_NE(message([](PropellerData& d) { d.diameter = std::nan(""); }).find("(1 to 20000)"), std::string::npos);
+  EXPECT_NE(message([](PropellerData& d) { d.diameter = std::nan(""); }).find("(1 to 20000)"),
+            std::string::npos);
   EXPECT_NE(message([](PropellerData& d) { d.pitch_ratio = 3; }).find("(0.5 to 1.4)"), std::string::npos);
   EXPECT_NE(message([](PropellerData& d) { d.area_ratio = 0; }).find("(0.3 to 1.05)"), std::string::npos);
   EXPECT_NE(message([](PropellerData& d) { d.hub_ratio = 0.9; }).find("hub ratio"), std::string::npos);

@@ -18,6 +18,9 @@ constexpr double kShares[] = {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8
 constexpr double kForShape = 1.25;
 /// Steps of the deflection when there would be too many triangles.
 constexpr double kCoarser = 1.1;
+/// Of all pieces together: surfaces of many pieces have few cells in each, whose bounds matter less.
+constexpr double kHalvings = 100'000;
+constexpr std::size_t kMostPoints = 16'000'000;  ///< of all pieces: half a gigabyte
 
 struct Spans {
   std::vector<Interval> u, v;
@@ -25,13 +28,25 @@ struct Spans {
   const detail::SecondBounds& at(std::size_t i, std::size_t j) const { return bounds[i + j * u.size()]; }
 };
 
+/// Pieces, and points of all of them, as they would be: knots may be many times as many as points.
+struct Size {
+  std::size_t pieces = 0, points = 0;
+};
+Size size_of(const NurbsSurface& surface) {
+  const std::size_t u = inner_knots(surface.knots_u, surface.degree_u).size() + 1;
+  const std::size_t v = inner_knots(surface.knots_v, surface.degree_v).size() + 1;
+  return {u * v, u * v * static_cast<std::size_t>((surface.degree_u + 1) * (surface.degree_v + 1))};
+}
+
 Spans spans_of(const NurbsSurface& surface) {
   Spans spans;
   const std::vector<BezierPatch> patches = bezier_patches(surface);
+  const int halvings =
+      std::min(detail::kMostHalvings, static_cast<int>(kHalvings / static_cast<double>(patches.size())));
   for (const BezierPatch& patch : patches) {
     if (patch.v == patches.front().v) spans.u.push_back(patch.u);
     if (patch.u == patches.front().u) spans.v.push_back(patch.v);
-    spans.bounds.push_back(detail::second_bounds(patch));
+    spans.bounds.push_back(detail::second_bounds(patch, halvings));
   }
   return spans;
 }
@@ -95,7 +110,8 @@ class Chooser {
       for (std::size_t i = 0; i < spans_->u.size(); ++i) {
         const auto& m = spans_->at(i, j);
         const double length = spans_->u[i].length();
-        double wanted = std::max(std::ceil(length * std::sqrt(m.uu / (share * eight_d))), for_edges(m.u, length));
+        double wanted =
+            std::max(std::ceil(length * std::sqrt(m.uu / (share * eight_d))), for_edges(m.u, length));
         if (square && m.v > 0)
           wanted = std::max(wanted, std::ceil(length * std::sqrt(m.uv * (m.u / m.v) / (0.5 * eight_d))));
         n.u[i] = std::max(n.u[i], wanted);
@@ -120,7 +136,8 @@ std::vector<double> lines(const std::vector<Interval>& spans, const std::vector<
   std::vector<double> out;
   for (std::size_t i = 0; i < spans.size(); ++i) {
     const auto n = static_cast<std::size_t>(counts[i]);
-    for (std::size_t k = 0; k < n; ++k) out.push_back(spans[i].lo + spans[i].length() * (double(k) / double(n)));
+    for (std::size_t k = 0; k < n; ++k)
+      out.push_back(spans[i].lo + spans[i].length() * (double(k) / double(n)));
   }
   out.push_back(spans.back().hi);
   // Spans of a few rounding units cannot be cut as often as others ask for.
@@ -134,14 +151,15 @@ Result<GridLines> grid_lines(const NurbsSurface& surface, const TessellateOption
   if (!(options.deflection_mm > 0) || !(options.max_edge_mm >= 0))
     return Error{ErrorCode::range, "the deflection or the longest edge of triangles is not positive", {}};
   if (auto ok = validate(surface); !ok) return ok.error();
-  const Spans spans = spans_of(surface);
   const auto most = static_cast<double>(options.max_triangles);
-  if (2 * static_cast<double>(spans.bounds.size()) > most)
+  const Size size = size_of(surface);
+  if (2 * static_cast<double>(size.pieces) > most || size.points > kMostPoints)
     return Error{ErrorCode::range,
-                 "a surface of " + std::to_string(spans.bounds.size()) + " pieces (at most " +
+                 "a surface of " + std::to_string(size.pieces) + " pieces (at most " +
                      std::to_string(options.max_triangles / 2) + " for " +
                      std::to_string(options.max_triangles) + " triangles)",
                  {}};
+  const Spans spans = spans_of(surface);
   Chooser chooser(spans, options.max_edge_mm);
   double deflection = options.deflection_mm;
   Counts counts = chooser.choose(deflection);
@@ -153,7 +171,8 @@ Result<GridLines> grid_lines(const NurbsSurface& surface, const TessellateOption
       const double far = counts.total / most;
       deflection *= far > 4 * kCoarser ? far / 4 : kCoarser;
       counts = chooser.choose(deflection);
-      if (!std::isfinite(deflection)) return Error{ErrorCode::range, "a surface too large to be cut in triangles", {}};
+      if (!std::isfinite(deflection))
+        return Error{ErrorCode::range, "a surface too large to be cut in triangles", {}};
     }
   }
   return GridLines{lines(spans.u, counts.u), lines(spans.v, counts.v), chooser.deflection(counts)};

@@ -113,7 +113,9 @@ class LineSolver {
   }
 
  private:
-  double& entry(int row, int column) { return band_[index(row) * index(2 * p_ + 1) + index(column - row + p_)]; }
+  double& entry(int row, int column) {
+    return band_[index(row) * index(2 * p_ + 1) + index(column - row + p_)];
+  }
   double entry(int row, int column) const {
     return band_[index(row) * index(2 * p_ + 1) + index(column - row + p_)];
   }
@@ -126,9 +128,11 @@ void solve_lines(std::vector<Point3>& points, int count, int lines, std::size_t 
                  const LineSolver& solver) {
   std::vector<Vec3> x(index(count));
   for (int line = 0; line < lines; ++line) {
-    for (int i = 0; i < count; ++i) x[index(i)] = points[index(line) * line_step + index(i) * step] - Point3{};
+    for (int i = 0; i < count; ++i)
+      x[index(i)] = points[index(line) * line_step + index(i) * step] - Point3{};
     solver.solve(x);
-    for (int i = 0; i < count; ++i) points[index(line) * line_step + index(i) * step] = Point3{} + x[index(i)];
+    for (int i = 0; i < count; ++i)
+      points[index(line) * line_step + index(i) * step] = Point3{} + x[index(i)];
   }
 }
 

@@ -64,7 +64,8 @@ TEST(Interpolate, ApproachesASphereWithTheFourthPower) {
     for (int j = 0; j < n; ++j) {
       for (int i = 0; i < n; ++i) {
         const double a = i / (n - 1.0), b = j / (n - 1.0);  // a patch of a quarter turn each way
-        grid.points.push_back({50 * std::cos(a) * std::cos(b), 50 * std::sin(a) * std::cos(b), 50 * std::sin(b)});
+        grid.points.push_back(
+            {50 * std::cos(a) * std::cos(b), 50 * std::sin(a) * std::cos(b), 50 * std::sin(b)});
       }
     }
     const auto s = interpolate(grid);
@@ -84,7 +85,8 @@ TEST(Interpolate, ApproachesASphereWithTheFourthPower) {
 TEST(Interpolate, OneRowMayBeAPole) {
   PointGrid grid{5, 5, {}};
   for (int j = 0; j < 5; ++j)
-    for (int i = 0; i < 5; ++i) grid.points.push_back({j * std::cos(0.3 * i), j * std::sin(0.3 * i), 0.1 * j * j});
+    for (int i = 0; i < 5; ++i)
+      grid.points.push_back({j * std::cos(0.3 * i), j * std::sin(0.3 * i), 0.1 * j * j});
   const auto s = interpolate(grid);
   ASSERT_TRUE(s.ok()) << s.error().to_string();
   EXPECT_LT(distance(point(*s, 0.37, 0), {0, 0, 0}), 1e-13);

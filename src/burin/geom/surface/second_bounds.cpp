@@ -11,10 +11,9 @@
 namespace burin::geom::detail {
 namespace {
 
-/// Parts are halved until the bounds are within this of what the surface really has at the corners of parts
-/// (a fifth more makes a tenth more lines), or until there have been so many.
+/// Parts are halved until the bounds are within this of what the surface really has at the corners of parts:
+/// a fifth more makes a tenth more lines.
 constexpr double kGoodEnough = 1.2;
-constexpr int kMostHalvings = 80;
 /// A derivative that takes less than this share of the deviation need not be known well.
 constexpr double kSmallPart = 0.02;
 
@@ -41,13 +40,15 @@ Net derived(const Net& net, int times_u, int times_v) {
   for (int k = 0; k < times_u; ++k) {
     Net next{now.p - 1, now.q, now.du, now.dv, {}};
     for (int j = 0; j <= now.q; ++j)
-      for (int i = 0; i < now.p; ++i) next.points.push_back((now.p / now.du) * (now.at(i + 1, j) - now.at(i, j)));
+      for (int i = 0; i < now.p; ++i)
+        next.points.push_back((now.p / now.du) * (now.at(i + 1, j) - now.at(i, j)));
     now = std::move(next);
   }
   for (int k = 0; k < times_v; ++k) {
     Net next{now.p, now.q - 1, now.du, now.dv, {}};
     for (int j = 0; j < now.q; ++j)
-      for (int i = 0; i <= now.p; ++i) next.points.push_back((now.q / now.dv) * (now.at(i, j + 1) - now.at(i, j)));
+      for (int i = 0; i <= now.p; ++i)
+        next.points.push_back((now.q / now.dv) * (now.at(i, j + 1) - now.at(i, j)));
     now = std::move(next);
   }
   return now;
@@ -59,11 +60,38 @@ Largest largest(const Net& net) {
   return out;
 }
 
+/// The same points, numerator and weight multiplied by the bilinear function that makes the weight 1 at the
+/// corners. Without it terms that cancel would be bounded one by one, and halving would not help.
+Net evened(const Net& net) {
+  const double w = net.points.front().w;
+  if (std::all_of(net.points.begin(), net.points.end(), [w](const HPoint& h) { return h.w == w; }))
+    return net;
+  const int p = net.p, q = net.q;
+  const double at_corner[2][2] = {{1 / net.at(0, 0).w, 1 / net.at(0, q).w},
+                                  {1 / net.at(p, 0).w, 1 / net.at(p, q).w}};
+  Net out{p + 1, q + 1, net.du, net.dv, {}};
+  out.points.assign(static_cast<std::size_t>((p + 2) * (q + 2)), HPoint{0, 0, 0, 0});
+  for (int j = 0; j <= q; ++j) {
+    for (int i = 0; i <= p; ++i) {
+      for (int a = 0; a < 2; ++a) {
+        for (int b = 0; b < 2; ++b) {
+          // Products of Bernstein polynomials: C(p, i) / C(p + 1, i + a).
+          const double su = double(a == 0 ? p + 1 - i : i + 1) / (p + 1);
+          const double sv = double(b == 0 ? q + 1 - j : j + 1) / (q + 1);
+          HPoint& to = out.at(i + a, j + b);
+          to = to + (su * sv * at_corner[a][b]) * net.at(i, j);
+        }
+      }
+    }
+  }
+  return out;
+}
+
 /// With the origin in the middle of the piece |S| <= r, and the quotient rule
 ///   Su = (Au - wu S) / w,  Suu = (Auu - 2 wu Su - wuu S) / w,  Suv = (Auv - wu Sv - wv Su - wuv S) / w
-/// bounds each term by the hull of its net. Exact for constant weights; converges with halving otherwise.
+/// bounds each term by the hull of its net.
 SecondBounds bounds_once(const Net& given) {
-  Net net = given;
+  Net net = evened(given);
   Box3 box;
   double least = net.points.front().w;
   for (const HPoint& h : net.points) box.add(project(h)), least = std::min(least, h.w);
@@ -93,7 +121,9 @@ std::pair<Net, Net> halved(const Net& net, Direction d) {
   (along_u ? lo.du : lo.dv) *= 0.5;
   (along_u ? hi.du : hi.dv) *= 0.5;
   const int n = along_u ? net.p : net.q, lines = along_u ? net.q : net.p;
-  const auto at = [along_u](Net& m, int line, int i) -> HPoint& { return along_u ? m.at(i, line) : m.at(line, i); };
+  const auto at = [along_u](Net& m, int line, int i) -> HPoint& {
+    return along_u ? m.at(i, line) : m.at(line, i);
+  };
   for (int line = 0; line <= lines; ++line) {
     for (int k = 1; k <= n; ++k) {
       for (int i = 0; i <= n - k; ++i) at(hi, line, i) = 0.5 * (at(hi, line, i) + at(hi, line, i + 1));
@@ -167,12 +197,12 @@ std::optional<std::size_t> worst_leaf(const std::vector<Leaf>& leaves, const Net
 
 }  // namespace
 
-SecondBounds second_bounds(const BezierPatch& patch) {
+SecondBounds second_bounds(const BezierPatch& patch, int most_halvings) {
   const Net net{patch.surface.degree_u, patch.surface.degree_v, patch.u.length(), patch.v.length(),
                 patch.surface.points};
   std::vector<Leaf> leaves{leaf(net)};
   const SecondBounds whole = leaves.front().bound;
-  for (int k = 0; k < kMostHalvings; ++k) {
+  for (int k = 0; k < most_halvings; ++k) {
     const auto at = worst_leaf(leaves, net);
     if (!at) break;
     const auto [left, right] = halved(leaves[*at].net, Direction::u);

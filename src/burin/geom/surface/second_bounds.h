@@ -11,7 +11,9 @@ struct SecondBounds {
   double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
 };
 
-/// From the control nets of the derivatives; the piece is halved as long as that makes the bounds smaller.
-SecondBounds second_bounds(const BezierPatch& patch);
+/// From the control nets of the derivatives; the piece is halved up to so many times as long as that makes
+/// the bounds smaller.
+inline constexpr int kMostHalvings = 80;
+SecondBounds second_bounds(const BezierPatch& patch, int most_halvings = kMostHalvings);
 
 }  // namespace burin::geom::detail

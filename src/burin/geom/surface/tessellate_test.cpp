@@ -17,7 +17,8 @@ namespace {
 double area(const Mesh& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles)
-    sum += 0.5 * norm(cross(mesh.vertices[t[1]] - mesh.vertices[t[0]], mesh.vertices[t[2]] - mesh.vertices[t[0]]));
+    sum += 0.5 *
+           norm(cross(mesh.vertices[t[1]] - mesh.vertices[t[0]], mesh.vertices[t[2]] - mesh.vertices[t[0]]));
   return sum;
 }
 
@@ -29,7 +30,8 @@ double real_deviation(const NurbsSurface& surface, const Mesh& mesh, std::size_t
   for (std::size_t i = 0; i < mesh.triangles.size(); i += step) {
     const auto& t = mesh.triangles[i];
     const Point3 a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
-    for (const Point3 p : {lerp(a, b, 0.5), lerp(b, c, 0.5), lerp(c, a, 0.5), lerp(lerp(a, b, 0.5), c, 1.0 / 3)})
+    for (const Point3 p :
+         {lerp(a, b, 0.5), lerp(b, c, 0.5), lerp(c, a, 0.5), lerp(lerp(a, b, 0.5), c, 1.0 / 3)})
       worst = std::max(worst, finder.find(p, 1e-7).distance);
   }
   return worst;
@@ -40,8 +42,12 @@ std::vector<NurbsSurface> shapes() {
   plain.weight_lo = plain.weight_hi = 1;
   plain.count_u = 9, plain.degree_v = 2;
   rational.weight_lo = 0.5, rational.weight_hi = 2, rational.count_v = 5, rational.degree_u = 4;
-  return {cases::random_surface(3, plain), cases::random_surface(4, rational), cases::sphere(30),
-          cases::cylinder(20, 80),         cases::torus(40, 10),               cases::cone(20, 30),
+  return {cases::random_surface(3, plain),
+          cases::random_surface(4, rational),
+          cases::sphere(30),
+          cases::cylinder(20, 80),
+          cases::torus(40, 10),
+          cases::cone(20, 30),
           cases::saddle(3)};
 }
 

@@ -186,24 +186,29 @@ void plan_contacts(const std::vector<CcPath>& contacts, const PathTask& task, Wo
   for (const std::string& bytes : results) plan.paths.push_back(std::move(paths_from_bytes(bytes).front()));
 }
 
+/// An initial solution at yaw +-90 degrees cuts no width at all: below this share of the tool's radius there
+/// is nothing to compare with.
+constexpr double kNoRadius = 1e-6;
+
 /// Mean of rho / rho_initial - 1 over the points that have both; 0 where none has.
 struct Gain {
+  double radius = 0;  ///< of the tool
   double sum = 0;
   std::size_t count = 0;
   void add(const OrientedPoint& point) {
+    if (!point.reachable || !point.initial_found || point.rho_initial < kNoRadius * radius) return;
     const double ratio = point.rho / point.rho_initial;
-    if (!point.reachable || !point.initial_found || !std::isfinite(ratio)) return;
+    if (!std::isfinite(ratio)) return;
     sum += ratio - 1, ++count;
   }
   double mean() const { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };
 
-void sum_up(OrientPlan& plan) {
-  Gain all;
+void sum_up(double radius, OrientPlan& plan) {
+  Gain all{radius};
   for (const OrientedPath& path : plan.paths) {
-    Gain gain;
+    Gain gain{radius};
     const OrientedPoint* before = nullptr;
-    std::vector<CcPoint> run;
     for (const OrientedPoint& point : path.points) {
       ++plan.contact_points;
       plan.tests += point.tests;
@@ -231,13 +236,12 @@ Setting setting_of(const Scene& scene, const MachineLimits& limits, const Orient
   return {&scene, &limits, options.range};
 }
 
-Result<OrientPlan> plan(const Part& part, const model::Mill& mill, const std::vector<CcPath>& contacts,
-                        const kinematics::Kinematics* machine, const OrientOptions& options, Workers& workers,
-                        Diagnostics& diagnostics, ProgressSink* progress) {
-  if (auto ok = model::validate(mill); !ok) return ok.error();
+Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimits& limits,
+                        const std::vector<CcPath>& contacts, const kinematics::Kinematics* machine,
+                        const OrientOptions& options, Workers& workers, Diagnostics& diagnostics,
+                        ProgressSink* progress) {
   if (auto ok = validate(options); !ok) return ok.error();
-  const Scene scene(part.mesh, mill, tool_body(mill, options.tolerance_mm, options.clearance_mm));
-  const MachineLimits limits = machine != nullptr ? MachineLimits(*machine) : MachineLimits();
+  const model::Mill& mill = scene.mill();
   const RadiusGoal radius(mill);
   const StripGoal strip(mill, options.scallop_mm);
   PathTask task;
@@ -260,7 +264,7 @@ Result<OrientPlan> plan(const Part& part, const model::Mill& mill, const std::ve
       task.sturz_tilt = sturz_tilt(task.setting, any.paths, workers).tilt;
     }
     plan_contacts(contacts, task, workers, progress, plan);
-    sum_up(plan);
+    sum_up(mill.radius, plan);
     return plan;
   }
 
@@ -300,7 +304,7 @@ Result<OrientPlan> plan(const Part& part, const model::Mill& mill, const std::ve
     task.sturz_tilt = one_tilt->tilt;
   }
   if (auto ok = run(task, plan); !ok) return ok.error();
-  sum_up(plan);
+  sum_up(mill.radius, plan);
   if (!one_tilt) one_tilt = sturz_tilt(task.setting, plan.paths, workers);
   plan.comparisons.push_back(compare_sturz(families, mill, options, *one_tilt));
   plan.comparisons.push_back(compare_ball(families, plan.paths, mill, options));

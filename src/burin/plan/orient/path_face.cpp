@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "burin/geom/point_tools.h"
 
@@ -100,9 +101,8 @@ bool PathFace::kept(geom::SurfaceEvaluator& evaluator, Point2 uv) const {
   const Point3 p = evaluator.point(uv.x, uv.y);
   // Rounding: the path at the distance itself is kept.
   const double least = edge_ - 1e-9 * size_;
-  return std::none_of(border_.begin(), border_.end(), [&](const auto& s) {
-    return geom::distance_to_segment(p, s.first, s.second) < least;
-  });
+  return std::none_of(border_.begin(), border_.end(),
+                      [&](const auto& s) { return geom::distance_to_segment(p, s.first, s.second) < least; });
 }
 
 Point2 PathFace::pulled_inside(Point2 uv, double share) const {
@@ -163,10 +163,65 @@ std::optional<CcPoint> PathFace::contact(geom::SurfaceEvaluator& evaluator, Poin
   return at;
 }
 
+std::vector<double> span_places(const std::vector<double>& knots, geom::Interval part, int per_span) {
+  // More knots than this share places: it is only where one begins to look.
+  constexpr std::size_t kMost = 2000;
+  // Spans shorter than this share of the part are none.
+  constexpr double kNoSpan = 1e-9;
+  std::vector<double> ends{part.lo};
+  for (const double k : knots) {
+    if (k > ends.back() + kNoSpan * part.length() && k < part.hi - kNoSpan * part.length()) ends.push_back(k);
+  }
+  ends.push_back(part.hi);
+  const std::size_t skip = 1 + ends.size() / kMost;
+  std::vector<double> out{part.lo};
+  for (std::size_t i = 0; i + 1 < ends.size();) {
+    const std::size_t j = std::min(i + skip, ends.size() - 1);
+    for (int k = 1; k <= per_span; ++k) out.push_back(ends[i] + (ends[j] - ends[i]) * k / per_span);
+    i = j;
+  }
+  return out;
+}
+
+std::vector<std::vector<Node>> kept_runs(const PathFace& face, geom::SurfaceEvaluator& evaluator,
+                                         std::vector<Node> nodes, const Between& between) {
+  // Halvings until the end of a stretch is found to a millionth of the step between nodes.
+  constexpr int kHalvings = 20;
+  const auto end = [&](Node in, Node out) {
+    for (int i = 0; i < kHalvings; ++i) {
+      const std::optional<Node> m = between(in, out);
+      if (!m) break;
+      (face.kept(evaluator, m->uv) ? in : out) = *m;
+    }
+    return in;
+  };
+  std::vector<std::vector<Node>> runs;
+  bool before = false;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const bool now = face.kept(evaluator, nodes[i].uv);
+    if (now && !before) {
+      runs.emplace_back();
+      if (i > 0) runs.back().push_back(end(nodes[i], nodes[i - 1]));
+    }
+    if (!now && before) runs.back().push_back(end(nodes[i - 1], nodes[i]));
+    if (now) runs.back().push_back(nodes[i]);
+    before = now;
+  }
+  return runs;
+}
+
+bool has_length(const std::vector<CcPoint>& points, double size) {
+  constexpr double kLeast = 1e-9;
+  return points.size() >= 2 && std::any_of(points.begin(), points.end(), [&](const CcPoint& p) {
+           return distance(p.c, points.front().c) > kLeast * size;
+         });
+}
+
 namespace {
 
-/// Nodes are put in for this share of the chord and turn allowed, so that leaving out finds good places.
-constexpr double kDense = 0.4, kSparse = 0.9;
+/// Nodes are put in for these shares of the chord and of the turn allowed (the spacing is then a third of
+/// what is allowed), so that leaving out finds good places.
+constexpr double kDenseChord = 0.1, kDenseTurn = 0.15, kSparse = 0.9;
 constexpr std::size_t kMostNodes = 400'000;
 constexpr int kMostHalvings = 20;
 
@@ -177,10 +232,13 @@ double cosine_turn(double turn) {
 void refine(const Node& a, const Node& b, const Between& between, const PathOptions& o, int left,
             std::vector<Node>& out) {
   if (left <= 0 || out.size() >= kMostNodes) return;
+  // A crease turns at once; nothing is won by coming nearer to it.
+  constexpr double kLeastStep = 0.05;
+  if (distance(a.cc.c, b.cc.c) <= kLeastStep * o.chord_mm) return;
   const std::optional<Node> m = between(a, b);
   if (!m) return;
-  const double turn = cosine_turn(kDense * o.max_turn);
-  const bool fine = geom::distance_to_segment(m->cc.c, a.cc.c, b.cc.c) <= kDense * o.chord_mm &&
+  const double turn = cosine_turn(kDenseTurn * o.max_turn);
+  const bool fine = geom::distance_to_segment(m->cc.c, a.cc.c, b.cc.c) <= kDenseChord * o.chord_mm &&
                     dot(a.cc.n, m->cc.n) >= turn && dot(m->cc.n, b.cc.n) >= turn &&
                     (o.max_step_mm <= 0 || distance(a.cc.c, b.cc.c) <= o.max_step_mm);
   if (fine) return;
@@ -204,13 +262,23 @@ bool spanned(const std::vector<Node>& nodes, std::size_t i, std::size_t j, const
 
 }  // namespace
 
-std::vector<CcPoint> even_out(const std::vector<Node>& coarse, const Between& between,
-                              const PathOptions& options) {
+std::vector<Node> refined(const std::vector<Node>& coarse, const Between& between,
+                          const PathOptions& options) {
+  PathOptions limits = options;
+  const double step = options.max_step_mm > 0 ? options.max_step_mm : std::numeric_limits<double>::infinity();
+  // Half the distance from the border: what lies nearer between two nodes does so by a 32nd of it at most.
+  const double share = options.edge_mm > 0 ? 0.5 * options.edge_mm : step;
+  const double fine = std::min(share, 0.35 * step);
+  limits.max_step_mm = std::isfinite(fine) ? fine : 0;
   std::vector<Node> dense;
   for (std::size_t i = 0; i < coarse.size(); ++i) {
-    if (i > 0) refine(coarse[i - 1], coarse[i], between, options, kMostHalvings, dense);
+    if (i > 0) refine(coarse[i - 1], coarse[i], between, limits, kMostHalvings, dense);
     dense.push_back(coarse[i]);
   }
+  return dense;
+}
+
+std::vector<CcPoint> thinned(const std::vector<Node>& dense, const PathOptions& options) {
   std::vector<CcPoint> out;
   if (dense.size() < 2) return out;
   out.push_back(dense.front().cc);

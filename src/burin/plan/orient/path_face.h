@@ -68,9 +68,19 @@ class PathFace {
 
 /// The node between two neighbours on the path; nothing: no further refinement there.
 using Between = std::function<std::optional<Node>(const Node&, const Node&)>;
-/// Puts nodes between those of `coarse` until options' limits hold with room, then leaves out what is not
-/// needed for them: a polyline within chord_mm of the path.
-std::vector<CcPoint> even_out(const std::vector<Node>& coarse, const Between& between,
-                              const PathOptions& options);
+/// `per_span` parameters to each span of the knots in `part`, both ends included; long knot vectors: to
+/// several spans together.
+std::vector<double> span_places(const std::vector<double>& knots, geom::Interval part, int per_span);
+/// The stretches of a path that are kept(), their ends found by halving.
+std::vector<std::vector<Node>> kept_runs(const PathFace& face, geom::SurfaceEvaluator& evaluator,
+                                         std::vector<Node> nodes, const Between& between);
+/// At least two points, and not all in one place.
+bool has_length(const std::vector<CcPoint>& points, double size);
+/// Puts nodes between those of a path until there are more than enough for the options' limits (and, where a
+/// distance from the border is to be kept, until the stretches in between cannot miss it by much).
+std::vector<Node> refined(const std::vector<Node>& coarse, const Between& between,
+                          const PathOptions& options);
+/// Leaves out what the limits do not need: a polyline within chord_mm of the path.
+std::vector<CcPoint> thinned(const std::vector<Node>& dense, const PathOptions& options);
 
 }  // namespace burin::orient::detail

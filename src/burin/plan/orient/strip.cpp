@@ -19,8 +19,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// 1 / tan(w / 2) that stands for w = 0: its square is finite, its inverse below any rounding.
 constexpr double kAtContact = 1e100;
-/// Of an angle that is looked for: the width that follows is as exact.
-constexpr double kAngleShare = 1e-11;
+/// Last step of an angle that is looked for (the error is its square, or itself where halving finds it).
+constexpr double kAngleShare = 1e-9;
 constexpr int kMaxSteps = 60;
 
 double square(double x) {
@@ -118,8 +118,7 @@ double largest_root(double h, double a2, double a3, double a4) {
 double edge_reaches_top(const Side& a) {
   const double x1 = a.cb, x2 = -a.s * a.ca, y1 = -a.s, y2 = -a.cb * a.ca, z2 = a.sa;
   const double k = a.circle.k, top = a.circle.top(), g = 2 * a.ring;
-  const double a2 =
-      g * (z2 - a.ring * (k * x1 * x1 + 2 * a.k_ft * x1 * y1 + a.k_ff * y1 * y1)) - 2 * top;
+  const double a2 = g * (z2 - a.ring * (k * x1 * x1 + 2 * a.k_ft * x1 * y1 + a.k_ff * y1 * y1)) - 2 * top;
   const double a3 = -2 * g * a.ring * (k * x1 * x2 + a.k_ft * (x1 * y2 + x2 * y1) + a.k_ff * y1 * y2);
   const double a4 =
       g * (z2 - a.ring * (k * (x2 * x2 + z2 * z2) + 2 * a.k_ft * x2 * y2 + a.k_ff * y2 * y2)) - top;
@@ -169,8 +168,7 @@ double flat_side(const Side& a) {
   const double end = std::max({reached, side, wide});
   const Place p = edge_at(a, end);
   const double z = lowered(a, p);
-  const double width =
-      end > reached && side >= wide ? along_side(a, p.x, z) : a.circle.foot(p.x, z);
+  const double width = end > reached && side >= wide ? along_side(a, p.x, z) : a.circle.foot(p.x, z);
   return std::max(width, under_bottom(a, p));
 }
 
@@ -201,23 +199,36 @@ Outline outline(const Side& a, double angle) {
   return o;
 }
 
-/// The least angle in [0, hi] at which the outline reaches the top level, hi when it does not.
+/// A first guess of the angle at which the outline reaches the top level: near the contact point the level
+/// grows with the square of the angle. Where the tool cuts in beside the contact point it does not; then a
+/// small angle to begin with.
+double first_guess(const Side& a) {
+  constexpr double kSmall = 1e-2;
+  const double bend = a.sa - a.ring * (a.k_ff * a.s * a.s - 2 * a.k_ft * a.s * a.cb);
+  if (!(a.cb > 0) || !(a.ring > 0)) return kSmall;
+  // Curvature of the ring's profile, of the bull nose's, and what the surface leaves of it.
+  const double ring = bend / (a.ring * square(a.cb));
+  const double nose = ring / (1 + a.corner * ring);
+  const double rest = nose - a.circle.k;
+  if (!(ring > 0) || !(rest > 0)) return kSmall;
+  return std::sqrt(2 * a.circle.h / rest) * nose / ring / (a.ring * a.cb);
+}
+
+/// The first angle in [0, hi] at which the outline reaches the top level, hi when it does not.
 double outline_reaches_top(const Side& a, double hi) {
+  constexpr double kStride = 1.3;  // of the steps until the level is passed
   const double top = a.circle.top(), root = std::sqrt(top);
   const auto level = [&](const Outline& o) { return a.circle.level(o.x, o.z); };
-  if (level(outline(a, hi)) <= top) return hi;
-  double lo = 0;
-  // Near the contact point the level grows with the square of the angle.
-  double angle = hi;
-  const double bend = a.sa - a.ring * (a.k_ff * a.s * a.s - 2 * a.k_ft * a.s * a.cb), across = square(a.cb);
-  if (bend > 0 && across > 0) {
-    const double radius = a.ring * across / bend;
-    const double rest = 1 / (radius + a.corner) - a.circle.k;
-    if (rest > 0) angle = std::sqrt(2 * a.circle.h / rest) / (radius + a.corner) * radius / (a.ring * a.cb);
+  double lo = 0, angle = std::min(first_guess(a), hi);
+  Outline o = outline(a, angle);
+  while (level(o) < top) {
+    if (angle >= hi) return hi;
+    lo = angle;
+    angle = std::min(kStride * angle, hi);
+    o = outline(a, angle);
   }
-  if (!(angle > 0 && angle < hi)) angle = 0.5 * hi;
+  hi = angle;
   for (int i = 0; i < kMaxSteps; ++i) {
-    const Outline o = outline(a, angle);
     const double at = level(o);
     (at < top ? lo : hi) = angle;
     const double slope = (o.tz - a.circle.k * (o.x * o.tx + o.z * o.tz)) * o.speed;
@@ -226,16 +237,15 @@ double outline_reaches_top(const Side& a, double hi) {
     if (!(to > lo && to < hi)) to = 0.5 * (lo + hi);
     if (hi - lo <= kAngleShare * hi) return hi;
     angle = to;
+    o = outline(a, angle);
   }
-  return lo;
+  return hi;
 }
 
 double bull_side(const Side& a) {
   const double side = 2 * std::atan2(1.0, side_begins(a));
   double end = outline_reaches_top(a, side);
-  const auto widens = [&](const Outline& o) {
-    return a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx > 0;
-  };
+  const auto widens = [&](const Outline& o) { return a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx > 0; };
   Outline o = outline(a, end);
   if (widens(o)) return end == side ? along_side(a, o.x, o.z) : a.circle.foot(o.x, o.z);
   double lo = 0, hi = end;
@@ -258,8 +268,7 @@ double resting_side(const Side& a) {
   };
   const auto within = [&](double angle) {
     const Outline o = place(angle);
-    return a.circle.level(o.x, o.z) <= a.circle.top() &&
-           a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx >= 0;
+    return a.circle.level(o.x, o.z) <= a.circle.top() && a.circle.k * (o.x * o.tz - o.z * o.tx) + o.tx >= 0;
   };
   if (!within(0)) {
     // The flat is left before its end: z = 0 at the top level.
