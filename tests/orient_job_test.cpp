@@ -94,7 +94,7 @@ Milled milled(const Part& part, const OrientOptions& options) {
     passes.push_back(std::move(pass));
   }
   out.strips =
-      verify::measure_strips(part.faces[0].surface, passes, job::checked_mill(mill()), {.threads = 0}).value();
+      verify::measure_strips(part.faces[0].surface, passes, job::checked_mill(mill()), {.window_mm = 1, .resolution_mm = 1e-3, .max_stations = 150, .threads = 0}).value();
   return out;
 }
 
