@@ -108,7 +108,7 @@ std::array<Vec3, 3> directions(const std::vector<Vec3>& corners, const Vec3& nor
 
 }  // namespace
 
-FittedBox fit_box(std::size_t count, const TriangleAt& triangle) {
+FittedBox fit_box(std::size_t count, const TriangleAt& triangle, bool roughly) {
   const Point3 ref = triangle(0)[0];
   std::vector<Vec3> corners;
   corners.reserve(3 * std::min(count, kSample));
@@ -125,7 +125,7 @@ FittedBox fit_box(std::size_t count, const TriangleAt& triangle) {
   const auto add = [&](const Vec3& v) {
     for (std::size_t k = 0; k < 3; ++k) extent[k].add(dot(v, box.axis[k]));
   };
-  if (step == 1) {
+  if (step == 1 || roughly) {
     for (const Vec3& v : corners) add(v);
   } else {
     for (std::size_t i = 0; i < count; ++i)

@@ -19,7 +19,8 @@ struct FittedBox {
 };
 
 using TriangleAt = std::function<std::array<geom::Point3, 3>(std::size_t)>;
-FittedBox fit_box(std::size_t count, const TriangleAt& triangle);
+/// `roughly`: of a sample of many; need not hold the others.
+FittedBox fit_box(std::size_t count, const TriangleAt& triangle, bool roughly = false);
 
 /// Writes the box into a lane, rounded outwards.
 void put_box(const FittedBox& box, const geom::Point3& origin, int lane, SceneNode& node);

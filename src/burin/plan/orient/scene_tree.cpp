@@ -41,8 +41,9 @@ class Builder {
   int packet(const Run& run);
   std::size_t split(const Run& run, int level);
   std::size_t split_by_side(const Run& run, const FittedBox& box);
-  FittedBox fit(const Run& run) const {
-    return fit_box(run.count(), [&](std::size_t i) { return corners(order_[run.first + i]); });
+  FittedBox fit(const Run& run, bool roughly = false) const {
+    return fit_box(
+        run.count(), [&](std::size_t i) { return corners(order_[run.first + i]); }, roughly);
   }
 
   const geom::Mesh& mesh_;
@@ -68,6 +69,7 @@ void Builder::run() {
   out_.place.assign(mesh_.triangles.size(), kNoPlace);
   if (order_.empty()) return;
   out_.packets.reserve(order_.size() / kPacket + kWide);
+  out_.nodes.reserve(order_.size() / kPacket / 4 + kWide);
   node(by_size(), 0);
 }
 
@@ -140,7 +142,7 @@ std::size_t Builder::split_by_side(const Run& run, const FittedBox& box) {
 /// Where to cut the run, after bringing it into order: whole packets on the left of a cut across the longest
 /// direction.
 std::size_t Builder::split(const Run& run, int level) {
-  const FittedBox box = fit(run);
+  const FittedBox box = fit(run, true);
   // Cuts by side need not halve: few of them, so that the levels stay few.
   constexpr int kSideLevels = 12;
   if (level < kSideLevels) {
