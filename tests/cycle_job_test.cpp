@@ -100,7 +100,7 @@ bool reversed_normal(const NurbsSurface& s) {
 
 TEST(CycleJob, ScallopIsWhatWasAskedFor) {
   std::mt19937 random(20);
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 6; ++i) {
     const auto method = i % 2 ? nc::PathMethod::iso_scallop : nc::PathMethod::iso_parametric;
     const job::CycleJob job = make(program({block(10, bumpy(random))}, method));
     ASSERT_EQ(job.runs.size(), 1u);

@@ -226,7 +226,7 @@ void expect_consistent(const Outcome& out) {
 
 TEST(RotaryJob, RandomPartsAreCutWithoutGouge) {
   const char* asked = std::getenv("BURIN_CASES");
-  const int cases = asked ? static_cast<int>(parse_double(asked).value_or(0)) : 24;
+  const int cases = asked ? static_cast<int>(parse_double(asked).value_or(0)) : 12;
   const char* first = std::getenv("BURIN_FIRST");
   const int start = first ? static_cast<int>(parse_double(first).value_or(0)) : 0;
   int done = 0, moved = 0, unreachable = 0;

@@ -285,7 +285,7 @@ CLI::App& Cli::add_command(CLI::App& group, const std::string& name, const std::
   CLI::App& app = add_to(group, name, description, examples);
   app.add_flag("--quiet", common_.quiet, "no progress and no notes on standard error");
   const std::string operation = &group == root_.get() ? name : group.get_name() + " " + name;
-  commands_[&app] = {operation, std::move(work)};
+  commands_[&app] = {operation, std::move(work), false};
   return app;
 }
 
@@ -318,23 +318,33 @@ void Cli::add_threads(CLI::App& app) {
               "threads to work with (default: all of the machine)");
 }
 
+void Cli::allow_ranks(CLI::App& app) {
+  commands_[&app].ranks = true;
+}
+
 int Cli::run(int argc, const char* const* argv) {
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  const Launch launch = find_launch();
+  const bool first = launch.rank == 0;
   try {
     root_->require_subcommand(0, 1);
     Check(*root_, arguments).run();
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     root_->parse(reversed);
   } catch (const UsageError& error) {
+    if (!first) return kDone;  // the first process says it once
     if (arguments.empty()) std::fputs(root_->help().c_str(), stderr);
     print_error(full_name(error.app) + ": " + error.message);
     return kWrongUsage;
   } catch (const CLI::CallForHelp&) {
+    if (!first) return kDone;
     return print_and_check(root_->help());
   } catch (const CLI::ParseError& error) {
+    if (!first) return kDone;
     print_error(full_name(chosen_command(*root_)) + ": " + reworded(error));
     return kWrongUsage;
   }
+  if (version_ && !first) return kDone;
   if (version_) return print_and_check(std::string("burin ") + BURIN_VERSION + "\n");
 
   const CLI::App* app = chosen_command(*root_);
@@ -343,11 +353,17 @@ int Cli::run(int argc, const char* const* argv) {
     print_error(full_name(app) + ": a command is missing");
     return kWrongUsage;
   }
-  return execute(command->second, shell_words(argc, argv));
+  return execute(command->second, shell_words(argc, argv), launch);
 }
 
-int Cli::execute(const Command& command, const std::string& command_line) {
-  Session session(command.operation, common_, command_line);
+int Cli::execute(const Command& command, const std::string& command_line, const Launch& launch) {
+  const std::unique_ptr<Cluster> cluster = command.ranks ? join_cluster(launch) : nullptr;
+  // Other processes of a command that has no work for them, or of a burin that cannot reach them, are done.
+  if (cluster == nullptr && launch.rank > 0) return kDone;
+  Session session(command.operation, common_, command_line, cluster.get());
+  if (cluster == nullptr && launch.several && command.ranks && !built_with_mpi())
+    session.diagnostics.info("one_process",
+                             "this burin was built without MPI: one process does all the work");
   // Clashes of output names are found before any work.
   auto run = [&]() -> Result<void> {
     for (const std::string* path :
@@ -359,7 +375,8 @@ int Cli::execute(const Command& command, const std::string& command_line) {
     return session.finish();
   };
   const auto done = run();
-  session.end_progress();  // also after an error, before messages
+  session.end_progress();              // also after an error, before messages
+  if (!session.first()) return kDone;  // the first process says what came of it
   print_warnings(session.diagnostics, common_.quiet);
   if (!done) {
     const bool placed = !done.error().where.to_string().empty();

@@ -58,6 +58,8 @@ class Cli {
   void add_tolerance(CLI::App& app);
   void add_dialect(CLI::App& app);
   void add_threads(CLI::App& app);
+  /// The command may run on several processes (mpirun); others run on the first alone.
+  void allow_ranks(CLI::App& app);
 
   /// Parses, runs the subcommand, writes its outputs, prints messages; returns the exit code.
   int run(int argc, const char* const* argv);
@@ -66,10 +68,11 @@ class Cli {
   struct Command {
     std::string operation;
     Work work;
+    bool ranks = false;
   };
   CLI::App& add_to(CLI::App& parent, const std::string& name, const std::string& description,
                    const std::string& examples);
-  int execute(const Command& command, const std::string& command_line);
+  int execute(const Command& command, const std::string& command_line, const Launch& launch);
 
   std::unique_ptr<CLI::App> root_;
   Common common_;

@@ -10,6 +10,8 @@ void add_laser(Cli& cli);
 void add_kerf(Cli& cli);
 void add_cycle(Cli& cli);
 void add_rotary(Cli& cli);
+void add_orient(Cli& cli);
+void add_cspace(Cli& cli);
 void add_post(Cli& cli);
 void add_surfaces(Cli& cli);
 

@@ -34,6 +34,8 @@ int main(int argc, char** argv) {
     burin::cli::add_surfaces(cli);
     burin::cli::add_cycle(cli);
     burin::cli::add_rotary(cli);
+    burin::cli::add_orient(cli);
+    burin::cli::add_cspace(cli);
     burin::cli::add_post(cli);
     return cli.run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -10,15 +10,18 @@
 
 #include "burin/cl/apt.h"
 #include "burin/model/machine.h"
+#include "burin/post/emit_tcp.h"
 #include "cli.h"
 #include "commands.h"
+#include "joint_options.h"
 
 namespace burin::cli {
 namespace {
 
 struct PostArgs {
   std::string path, machine;
-  post::FeedMode feed = post::FeedMode::inverse_time;
+  JointOptions joints;
+  bool tcp = false, as_joints = false;
 };
 
 /// Error for the first pose whose axis is not upright: it needs a machine that can tilt.
@@ -49,30 +52,32 @@ Result<post::NcText> upright_nc(const cl::Program& program, const model::Machine
   return post::emit(program, dialect, options, session.diagnostics);
 }
 
-/// Joint coordinates of a machine with rotary axes.
+/// Joint coordinates of a machine with rotary axes, or the tip and its rotary axes.
 Result<post::NcText> rotary_nc(const cl::Program& program, const model::Machine& machine,
                                const post::Dialect& dialect, const PostArgs& args, Session& session) {
   auto kinematics = kinematics::Kinematics::make(machine);
   if (!kinematics) return kinematics.error();
   kinematics::JointPathOptions options;
   options.tolerance_mm = session.common.tolerance_mm;
+  options.tool_centre = args.tcp;
+  options.keep_acceleration = args.joints.keep_acceleration;
   auto path = kinematics::make_joint_path(*kinematics, program, options);
   if (!path) {
     Error error = path.error();
     error.where.file = args.path;
     return error;
   }
-  session.report.counts["inserted"] = path->inserted;
-  session.report.counts["feed_limited"] = path->feed_limited;
+  report_joints(*path, session);
   session.report.quality["max_deviation_mm"] = path->deviation_mm;
-  if (path->feed_limited > 0)
-    session.diagnostics.info(
-        "feed_limited", std::to_string(path->feed_limited) + " of " + std::to_string(path->moves.size()) +
-                            " moves are slower than the feed: an axis is at its speed limit");
+  const kinematics::RotaryShares shares = kinematics::rotary_shares(*kinematics, path->moves);
+  session.report.quality["rotary_speed_share"] = std::max(shares.speed[0], shares.speed[1]);
+  session.report.quality["rotary_acceleration_share"] =
+      std::max(shares.acceleration[0], shares.acceleration[1]);
   post::JointEmitOptions emit;
   emit.write_z = true;
-  emit.feed = args.feed;
-  return post::emit_joints(program, *kinematics, *path, dialect, emit, session.diagnostics);
+  emit.feed = args.joints.feed;
+  return args.tcp ? post::emit_tcp(program, *kinematics, *path, dialect, emit, session.diagnostics)
+                  : post::emit_joints(program, *kinematics, *path, dialect, emit, session.diagnostics);
 }
 
 Result<void> run_post(const PostArgs& args, Session& session) {
@@ -89,6 +94,11 @@ Result<void> run_post(const PostArgs& args, Session& session) {
   const bool rotary = std::any_of(machine->axes.begin(), machine->axes.end(), [](const model::Axis& axis) {
     return axis.kind == model::AxisKind::rotary;
   });
+  if (args.tcp && !rotary)
+    return Error{
+        ErrorCode::usage,
+        "--tcp: machine " + machine->name + " has no rotary axes (a machine with rotary axes, or no --tcp)",
+        {}};
   auto nc = (rotary ? rotary_nc : upright_nc)(*program, *machine, *dialect, args, session);
   if (!nc) return nc.error();
   session.report.parameters["machine"] = machine->name;
@@ -110,16 +120,19 @@ void add_post(Cli& cli) {
       cli.add_command("post", "NC program from a CL file, for machines of three to five axes",
                       "  burin post path.cl --machine xyz --dialect linuxcnc -o path.ngc\n"
                       "  burin post path.cl --machine laser-xy --dialect grbl -o -\n"
-                      "  burin post blade.cl --machine xyzac-trunnion --tolerance 0.005 -o blade.ngc\n",
+                      "  burin post blade.cl --machine xyzac-trunnion --tolerance 0.005 -o blade.ngc\n"
+                      "  burin post blade.cl --machine xyzac-trunnion --dialect fanuc --tcp -o blade.nc\n",
                       [args](Session& session) { return run_post(*args, session); });
   add_text(app, "PATH.cl", args->path, "FILE", "tool path as APT CL text")->required();
   add_text(app, "--machine", args->machine, "NAME",
            "a preset (laser-xy, xyz, xyza, xyzac-trunnion, ...) or a machine file NAME.toml")
       ->required();
-  add_choice<post::FeedMode>(
-      app, "--feed-mode", args->feed,
-      {{"inverse-time", post::FeedMode::inverse_time}, {"per-minute", post::FeedMode::per_minute}},
-      "of machines with rotary axes: G93, or G94 with an F that gives the tip its feed");
+  CLI::Option* tcp =
+      app.add_flag("--tcp", args->tcp,
+                   "tip and rotary axes for controls with tool-centre-point control (G43.4; dialect fanuc)");
+  app.add_flag("--joints", args->as_joints, "joint coordinates (default)")->excludes(tcp);
+  add_feed_mode(app, args->joints, "joint coordinates of machines with rotary axes: ");
+  add_keep_acceleration(app, args->joints);
   cli.add_tolerance(app);
   cli.add_dialect(app);
   cli.add_output(app, "NC program (default: the CL file's name with .ngc)");

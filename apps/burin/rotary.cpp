@@ -12,6 +12,7 @@
 #include "burin/view/rotary_html.h"
 #include "cli.h"
 #include "commands.h"
+#include "joint_options.h"
 
 namespace burin::cli {
 namespace {
@@ -23,7 +24,7 @@ struct RotaryArgs {
   std::optional<double> tolerance;
   std::optional<rotary::Tsi> tsi;
   std::optional<rotary::Tai> tai;
-  post::FeedMode feed = post::FeedMode::inverse_time;
+  JointOptions joints;
 };
 
 const char* word(rotary::State state) {
@@ -250,13 +251,10 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
     return error;
   };
   if (!job) return in_file(job.error());
-  if (job->joints.feed_limited > 0)
-    session.diagnostics.info("feed_limited",
-                             std::to_string(job->joints.feed_limited) +
-                                 " moves are slower than the feed: an axis is at its speed limit");
+  report_joints(job->joints, session);
   post::JointEmitOptions emit;
   emit.write_z = true;
-  emit.feed = args.feed;
+  emit.feed = args.joints.feed;
   auto nc = post::emit_joints(job->cl, *machine, job->joints, *dialect, emit, session.diagnostics);
   if (!nc) return in_file(nc.error());
   std::optional<job::RotaryCheck> check;
@@ -299,10 +297,7 @@ void add_rotary(Cli& cli) {
       [args](Session& session) { return run_rotary(*args, session); });
   add_text(app, "JOB.toml", args->job, "FILE", "part, tool, operation and machine")->required();
   add_text(app, "--points", args->points, "FILE", "contact points, axes and reachable angles as CSV");
-  add_choice<post::FeedMode>(
-      app, "--feed-mode", args->feed,
-      {{"inverse-time", post::FeedMode::inverse_time}, {"per-minute", post::FeedMode::per_minute}},
-      "G93, or G94 with an F that gives the tip its feed");
+  add_feed_mode(app, args->joints, "");
   add_choice<std::optional<rotary::Tsi>>(
       app, "--tsi", args->tsi, {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}},
       "where the ball fits: against the whole part, or along the path as in "

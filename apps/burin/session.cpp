@@ -44,8 +44,20 @@ Result<void> write_stdout(const std::string& text) {
 
 }  // namespace
 
-Session::Session(std::string operation, Common common_options, std::string command)
-    : common(std::move(common_options)), command_line(std::move(command)), operation_(std::move(operation)) {}
+Session::Session(std::string operation, Common common_options, std::string command, Cluster* cluster)
+    : common(std::move(common_options)),
+      command_line(std::move(command)),
+      operation_(std::move(operation)),
+      cluster_(cluster) {}
+
+Result<std::string> Session::from_first(const std::function<Result<std::string>()>& ask) {
+  return cluster_ == nullptr ? ask() : cluster_->from_first(ask);
+}
+
+std::unique_ptr<Workers> Session::workers() {
+  const auto threads = static_cast<unsigned>(common.threads);
+  return cluster_ == nullptr ? std::make_unique<LocalWorkers>(threads) : cluster_->workers(threads);
+}
 
 Session::Output* Session::find_output(const std::string& path) {
   for (Output& output : outputs_) {
@@ -64,13 +76,23 @@ Result<void> Session::protect(const std::string& path) {
 }
 
 Result<std::string> Session::read_input(const std::string& path) {
-  if (auto fine = protect(path); !fine) return fine.error();
-  auto bytes = read_file(path);
+  auto bytes = from_first([&]() -> Result<std::string> {
+    if (auto fine = protect(path); !fine) return fine.error();
+    return read_file(path);
+  });
   if (bytes.ok()) inputs_.push_back({path, sha256_hex(*bytes)});
   return bytes;
 }
 
 Result<void> Session::reserve_output(const std::string& path) {
+  const auto answer = from_first([&]() -> Result<std::string> {
+    if (auto fine = reserve(path); !fine) return fine.error();
+    return std::string();
+  });
+  return answer ? Result<void>() : answer.error();
+}
+
+Result<void> Session::reserve(const std::string& path) {
   if (path.empty())
     return Error{ErrorCode::usage, "an output has no name (a file, or - for standard output)", {}};
   for (const std::string& input : protected_) {
@@ -90,9 +112,10 @@ Result<void> Session::reserve_output(const std::string& path) {
 }
 
 Result<void> Session::put(const std::string& path, std::string content) {
+  if (!first()) return {};
   Output* output = find_output(path);
   if (output == nullptr || output->ready) {
-    if (auto reserved = reserve_output(path); !reserved) return reserved.error();
+    if (auto reserved = reserve(path); !reserved) return reserved.error();
     output = &outputs_.back();
   }
   output->content = std::move(content);
@@ -101,7 +124,7 @@ Result<void> Session::put(const std::string& path, std::string content) {
 }
 
 ProgressSink* Session::progress() {
-  if (!progress_) progress_ = make_progress_bar(!common.quiet);
+  if (!progress_) progress_ = make_progress_bar(!common.quiet && first());
   return progress_.get();
 }
 
@@ -140,13 +163,14 @@ Json Session::json() const {
 
 Result<void> Session::finish() {
   end_progress();
+  if (!first()) return {};
   if (!report.time_s.contains("planning")) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
     report.time_s["planning"] = spent.count();
   }
   if (!common.json.empty()) {
     if (find_output(common.json) == nullptr) {
-      if (auto reserved = reserve_output(common.json); !reserved) return reserved.error();
+      if (auto reserved = reserve(common.json); !reserved) return reserved.error();
     }
     // Names and texts from files may hold bytes that are not UTF-8: they become U+FFFD, never an exception.
     std::string text = json().dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -13,6 +13,7 @@
 
 #include "burin/base/diagnostics.h"
 #include "burin/base/result.h"
+#include "cluster.h"
 
 namespace burin::cli {
 
@@ -39,7 +40,8 @@ struct Report {
 
 class Session {
  public:
-  Session(std::string operation, Common common_options, std::string command_line);
+  /// `cluster`: of a run on several processes, else nullptr; must outlive the session.
+  Session(std::string operation, Common common_options, std::string command_line, Cluster* cluster = nullptr);
 
   const Common common;
   /// As typed, for reports: "burin laser part.dxf --kerf 0.4".
@@ -62,6 +64,11 @@ class Session {
 
   /// Progress bar on standard error: only on a terminal, after a second of work, gone when done.
   ProgressSink* progress();
+  /// Threads as asked for, on all processes of the run.
+  std::unique_ptr<Workers> workers();
+  /// The process that prints and writes: pictures, checks and texts are made there only. Everything up to
+  /// them runs on all processes alike; inputs and answers about files come from the first.
+  bool first() const { return cluster_ == nullptr || cluster_->rank() == 0; }
   void end_progress() { progress_.reset(); }
 
   /// Adds the JSON report when asked for, writes all files, then standard output. On failure what was
@@ -79,7 +86,12 @@ class Session {
   Json json() const;
   Output* find_output(const std::string& path);
 
+  Result<void> reserve(const std::string& path);
+  /// What `ask` answers on the first process.
+  Result<std::string> from_first(const std::function<Result<std::string>()>& ask);
+
   std::string operation_;
+  Cluster* cluster_ = nullptr;
   std::vector<Input> inputs_;
   std::vector<std::string> protected_;
   std::vector<Output> outputs_;

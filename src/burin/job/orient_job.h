@@ -22,9 +22,11 @@ namespace burin::job {
 struct OrientSurface {
   std::string file;        ///< STEP or IGES
   std::vector<int> faces;  ///< only these are milled (all others of the file are obstacles); empty: all
+  bool flip = false;       ///< the tool stands on the other side of the faces than the file says
 };
 struct OrientMesh {
   std::string file;
+  bool flip = false;  ///< the triangles are clockwise seen from the tool
 };
 struct OrientJobFile {
   std::variant<OrientSurface, OrientMesh, model::PropellerData> part;

@@ -21,32 +21,6 @@ constexpr double kMaxLength = 1e5;  ///< mm: parts and tools beyond 100 m are sl
 constexpr double kSmallest = 1e-4;  ///< mm: lengths below are slips too
 constexpr double kMaxTurns = 1000;
 
-/// One of a few words.
-template <class T>
-T choice(TomlReader& reader, const toml::table& table, std::string_view key,
-         const std::vector<std::pair<std::string, T>>& choices, T fallback) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return fallback;
-  const std::string word = reader.text(table, key);
-  std::string list;
-  for (const auto& [name, value] : choices) {
-    if (name == word) return value;
-    list += (list.empty() ? "" : ", ") + name;
-  }
-  reader.fail(*node, "\"" + std::string(key) + "\" is \"" + word + "\" (" + list + ")");
-  return fallback;
-}
-
-bool flag(TomlReader& reader, const toml::table& table, std::string_view key, bool fallback) {
-  const toml::node* node = table.get(key);
-  if (node == nullptr) return fallback;
-  if (!node->is_boolean()) {
-    reader.fail(*node, "\"" + std::string(key) + "\" is not true or false");
-    return fallback;
-  }
-  return *node->value<bool>();
-}
-
 // --- [part]
 
 /// stations = [[x_mm, theta_deg], ...]
@@ -150,7 +124,7 @@ std::vector<model::HolderPiece> read_holder(TomlReader& reader, const toml::tabl
 
 model::BallTool read_tool(TomlReader& reader, const toml::table& table) {
   reader.only_keys(table, {"kind", "radius", "shank_radius", "shank_length", "holder"});
-  choice<int>(reader, table, "kind", {{"ball", 0}}, 0);
+  reader.choice<int>(table, "kind", {{"ball", 0}}, 0);
   model::BallTool tool;
   tool.radius = reader.number(table, "radius", kSmallest, kMaxLength);
   tool.shank_radius =
@@ -168,24 +142,24 @@ rotary::RotaryOptions read_operation(TomlReader& reader, const toml::table& tabl
   reader.only_keys(table, {"pattern", "tolerance", "scallop", "side_step", "tsi", "tai", "clearance_angle",
                            "lean_angle", "smooth", "feed", "safety", "spindle"});
   rotary::RotaryOptions o;
-  o.pattern = choice<rotary::Pattern>(reader, table, "pattern",
-                                      {{"rings", rotary::Pattern::rings},
-                                       {"spiral", rotary::Pattern::spiral},
-                                       {"lines", rotary::Pattern::lines}},
-                                      o.pattern);
+  o.pattern = reader.choice<rotary::Pattern>(table, "pattern",
+                                             {{"rings", rotary::Pattern::rings},
+                                              {"spiral", rotary::Pattern::spiral},
+                                              {"lines", rotary::Pattern::lines}},
+                                             o.pattern);
   o.tolerance_mm = reader.number(table, "tolerance", 1e-4, 10, o.tolerance_mm);
   o.scallop = reader.number(table, "scallop", 1e-6, 1e3, o.scallop);
   if (const toml::node* node = table.get("side_step")) {
     if (table.contains("scallop")) reader.fail(*node, "\"side_step\" beside \"scallop\" (one or the other)");
     o.side_step = reader.number(table, "side_step", kSmallest, kMaxLength);
   }
-  o.tsi = choice<rotary::Tsi>(reader, table, "tsi",
-                              {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}}, o.tsi);
-  o.tai = choice<rotary::Tai>(reader, table, "tai",
-                              {{"exact", rotary::Tai::exact}, {"section", rotary::Tai::section}}, o.tai);
+  o.tsi = reader.choice<rotary::Tsi>(table, "tsi",
+                                     {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}}, o.tsi);
+  o.tai = reader.choice<rotary::Tai>(
+      table, "tai", {{"exact", rotary::Tai::exact}, {"section", rotary::Tai::section}}, o.tai);
   o.clearance = radians(reader.number(table, "clearance_angle", 0, 90, geom::degrees(o.clearance)));
   o.lean = radians(reader.number(table, "lean_angle", 0, 90, geom::degrees(o.lean)));
-  o.smooth = flag(reader, table, "smooth", o.smooth);
+  o.smooth = reader.flag(table, "smooth", o.smooth);
   o.feed_mm_min = reader.number(table, "feed", 1e-3, 1e6, o.feed_mm_min);
   o.safety_mm = reader.number(table, "safety", 1e-3, kMaxLength, o.safety_mm);
   return o;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "burin/base/text.h"
+#include "burin/kinematics/feed_way.h"
 
 namespace burin::kinematics {
 namespace {
@@ -17,28 +18,28 @@ using geom::Vec3;
 // Where a move passes a pole at a small distance, a table turns half round within a short stretch of it: only
 // there it is halved so often.
 constexpr int kMaxHalvings = 24;
+// A turn of the first rotary axis below this needs no help at a pole.
+constexpr double kPoleTurn = 0.1;
 // The tip hardly moves (the tool turns about it): its speed says nothing.
 constexpr double kStill_mm = 1e-3;
 // Measured between the ends of a move.
 constexpr double kSamples[] = {0.25, 0.5, 0.75};
 
-/// On the great circle from a to b; along any where they are opposite.
-Vec3 slerp(Vec3 a, Vec3 b, double t) {
-  const Vec3 across = geom::cross(a, b);
-  const double angle = std::atan2(norm(across), dot(a, b));
-  if (angle < 1e-12) return a;
-  const Vec3 axis = norm(across) > 1e-12 ? unit(across) : unit(geom::cross(a, Vec3{a.y, a.z, -a.x}));
-  return turned(a, axis, t * angle);
-}
-
 /// What a motion record asks for, at t in [0, 1].
 struct Wanted {
+  Wanted(const cl::Pose& start, const cl::Pose& end, const cl::Arc* along)
+      : from(start),
+        to(end),
+        straight(start, end),
+        arc(along),
+        sweep(along != nullptr ? cl::arc_sweep(start.tip, *along) : 0) {}
   cl::Pose from, to;
-  const cl::Arc* arc = nullptr;
-  double sweep = 0;
+  FeedWay straight;
+  const cl::Arc* arc;
+  double sweep;
 
   cl::Pose at(double t) const {
-    cl::Pose pose{lerp(from.tip, to.tip, t), slerp(from.axis, to.axis, t)};
+    cl::Pose pose = straight.at(t);
     if (arc != nullptr) {
       const Vec3 spoke = from.tip - arc->center;
       const double rise = dot(to.tip - from.tip, arc->normal);
@@ -72,6 +73,7 @@ class Maker {
       known_ = true;
       ++move_;
     }
+    if (options_.keep_acceleration) out_.acceleration_limited = keep_acceleration(machine_, out_.moves);
     return std::move(out_);
   }
 
@@ -110,8 +112,7 @@ class Maker {
   Result<void> cut(const cl::Record& record, const cl::Pose& to) {
     if (!known_)
       return placed(Error{ErrorCode::usage, "the first move is at feed from an unknown place (a rapid)", {}});
-    Wanted wanted{pose_, to, std::get_if<cl::Arc>(&record), 0};
-    if (wanted.arc != nullptr) wanted.sweep = cl::arc_sweep(pose_.tip, *wanted.arc);
+    const Wanted wanted(pose_, to, std::get_if<cl::Arc>(&record));
     int pieces = 1;
     if (wanted.arc != nullptr) {
       const double half =
@@ -136,8 +137,21 @@ class Maker {
     const Joints end = *sought;
     if (options_.joint_linear) return in_parts(start, end, 0, first);
     const double off = deviation(wanted, t0, t1, start, end);
+    if (options_.tool_centre && off <= options_.tolerance_mm)
+      return add_cut(start, end, geom::distance(wanted.at(t0).tip, wanted.at(t1).tip), first);
+    if (off > options_.tolerance_mm && at_pole(wanted.at(t0).axis, start, end) &&
+        at_pole(wanted.at(t1).axis, start, end)) {
+      // What is left is the turn of an axis that does not matter here: in place, then on.
+      const std::array<double, 2> turned{end.rotary[0], start.rotary[1]};
+      ++out_.pole_turns;
+      if (auto ok =
+              in_place(wanted.at(t0).tip, start, machine_.with_rotary(wanted.at(t0).tip, turned), 0, first);
+          !ok)
+        return ok;
+      return piece(wanted, t0, t1, halvings, first);
+    }
     const TipMotion tip = tip_motion(machine_, start, end);
-    if (off <= options_.tolerance_mm && (!uneven(tip) || halvings == kMaxHalvings)) {
+    if (!options_.tool_centre && off <= options_.tolerance_mm && (!uneven(tip) || halvings == kMaxHalvings)) {
       out_.deviation_mm = std::max(out_.deviation_mm, off);
       return add_cut(start, end, tip.length, first);
     }
@@ -151,6 +165,30 @@ class Maker {
     const double tm = 0.5 * (t0 + t1);
     if (auto ok = piece(wanted, t0, tm, halvings + 1, first); !ok) return ok;
     return piece(wanted, tm, t1, halvings + 1, first);
+  }
+
+  /// The tool axis is so near to the first rotary axis that this may turn as it likes, and it has to turn by
+  /// much: the turn leaves the axis within its tolerance.
+  bool at_pole(const Vec3& axis, const Joints& start, const Joints& end) const {
+    if (machine_.rotary_count() < 2 || std::abs(end.rotary[0] - start.rotary[0]) < kPoleTurn) return false;
+    const double off = norm(geom::cross(axis, machine_.rotary_axis(0).direction));
+    return off <= 0.5 * options_.axis_tolerance_rad;
+  }
+
+  /// Turns about a tip that stays within the tolerance.
+  Result<void> in_place(const Point3& tip, const Joints& start, const Joints& end, int halvings,
+                        bool& first) {
+    if (const auto beyond = machine_.violation(end))
+      return placed(Error{ErrorCode::range, "beyond the travel of axis " + beyond->text(), {}});
+    const Joints middle = between(start, end, 0.5);
+    const double off = options_.tool_centre ? 0 : geom::distance(machine_.forward(middle).tip, tip);
+    if (off <= options_.tolerance_mm || halvings == kMaxHalvings) {
+      out_.deviation_mm = std::max(out_.deviation_mm, off);
+      return add_cut(start, end, 0, first);
+    }
+    if (auto ok = in_place(tip, start, machine_.with_rotary(tip, middle.rotary), halvings + 1, first); !ok)
+      return ok;
+    return in_place(tip, at_, end, halvings + 1, first);
   }
 
   /// A joint-linear move in as many parts as even out the tip's speed; they are parts of the same motion.
@@ -185,7 +223,8 @@ class Maker {
       const double length = norm(way);
       const Vec3 beside = length > 0 ? off - (dot(off, way) / (length * length)) * way : off;
       const double tilt = norm(is.axis - should.axis);
-      worst = std::max({worst, norm(beside), options_.tolerance_mm * tilt / options_.axis_tolerance_rad});
+      worst = std::max({worst, options_.tool_centre ? 0.0 : norm(beside),
+                        options_.tolerance_mm * tilt / options_.axis_tolerance_rad});
     }
     return worst;
   }

@@ -4,6 +4,7 @@
 // tip on the part. mm, radians, minutes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,12 @@ struct JointPathOptions {
   double axis_tolerance_rad = 0.1 * geom::kPi / 180;
   /// The records already mean joint-linear motion (the rotary planner's do): no points between for the shape.
   bool joint_linear = false;
+  /// Tool-centre-point control moves the tip straight by itself: points between only where the axis would
+  /// leave its great circle, rotary axes turning evenly.
+  bool tool_centre = false;
+  /// Moves take longer where the change of a rotary axis' speed from one to the next asks for more than its
+  /// acceleration.
+  bool keep_acceleration = false;
   /// The tip's speed within a move is within this share of the feed; points between where it is not.
   double speed_share = 0.01;
   Joints start;  ///< of the machine when the program begins: which solution is near
@@ -35,9 +42,11 @@ struct JointPath {
   std::vector<JointMove> moves;
   std::size_t inserted = 0;  ///< points between
   std::size_t feed_limited =
-      0;                    ///< moves that take longer than the feed says: an axis is at its highest speed
-  double deviation_mm = 0;  ///< of the tip, largest measured
-  double turn_max = 0;      ///< largest change of a rotary axis in one feed move
+      0;  ///< moves that take longer than the feed says: an axis is at its highest speed
+  std::size_t acceleration_limited = 0;  ///< feed moves made slower for the acceleration of a rotary axis
+  std::size_t pole_turns = 0;            ///< turns of the first rotary axis in place, at a pole
+  double deviation_mm = 0;               ///< of the tip, largest measured
+  double turn_max = 0;                   ///< largest change of a rotary axis in one feed move
 };
 
 /// Errors: a tool axis the machine cannot reach (unsupported), a position beyond its limits (range; names CL
@@ -46,6 +55,16 @@ struct JointPath {
 /// lines within half the tolerance.
 Result<JointPath> make_joint_path(const Kinematics& machine, const cl::Program& program,
                                   const JointPathOptions& options);
+
+/// Largest shares of the rotary axes' speed and acceleration in feed moves as they are timed; acceleration:
+/// the change of speed from one move to the next over half the time of both. Axes without the figure do not
+/// count.
+struct RotaryShares {
+  std::array<double, 2> speed{}, acceleration{};
+};
+RotaryShares rotary_shares(const Kinematics& machine, const std::vector<JointMove>& moves);
+/// Makes moves longer until the acceleration is kept; how many. Rapids part what is looked at.
+std::size_t keep_acceleration(const Kinematics& machine, std::vector<JointMove>& moves);
 
 /// Joints at t in [0, 1] of a linear move.
 Joints between(const Joints& a, const Joints& b, double t);

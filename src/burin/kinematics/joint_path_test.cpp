@@ -128,6 +128,127 @@ TEST(JointPath, PassesThroughAPole) {
   }
 }
 
+/// A trunnion that tilts to one side only: through the pole its table has to turn half round.
+Kinematics one_sided() {
+  model::Machine machine = *model::find_machine("xyzac-trunnion");
+  for (model::Axis& axis : machine.axes)
+    if (axis.letter == 'A') axis.min = 0, axis.max = 100;
+  return *Kinematics::make(machine);
+}
+
+/// Largest distance of the tip from its lines and of the axis from its great circles (radians), sampled
+/// densely. The axis runs in the plane of `normal`.
+std::pair<double, double> measured(const Kinematics& k, const JointPath& path,
+                                   const std::vector<cl::Pose>& poses, Vec3 normal, bool tip_straight) {
+  double tip_off = 0, axis_off = 0;
+  for (std::size_t m = 1; m < path.moves.size(); ++m) {
+    const std::size_t leg = path.moves[m].record - 1;
+    for (int s = 0; s <= 40; ++s) {
+      const cl::Pose at = k.forward(between(path.moves[m - 1].to, path.moves[m].to, s / 40.0));
+      if (!tip_straight) tip_off = std::max(tip_off, off_line(at.tip, poses[leg - 1].tip, poses[leg].tip));
+      axis_off = std::max(axis_off, std::abs(dot(at.axis, normal)));
+    }
+  }
+  return {tip_off, axis_off};
+}
+
+// Through the pole and nearly through it, on a machine that cannot tilt to the other side.
+TEST(JointPath, TurnsTheTableAtAPole) {
+  const Kinematics k = one_sided();
+  for (const double beside : {0.0, 2e-4}) {
+    const Vec3 aside{std::sin(0.9), -std::cos(0.9), 0};
+    std::vector<cl::Pose> poses{{{-30, 5, 0}, direction(0.3, 0.9)},
+                                {{30, 25, 0}, direction(0.3, 0.9 + geom::kPi)}};
+    for (cl::Pose& pose : poses) pose.axis = unit(pose.axis + beside * aside);
+    const Vec3 normal = unit(cross(poses[0].axis, poses[1].axis));
+    for (const bool tool_centre : {false, true}) {
+      cl::Program program;
+      program.add(cl::FeedRate{500});
+      program.add(cl::Rapid{poses[0]});
+      program.add(cl::Feed{poses[1]});
+      JointPathOptions options;
+      options.tool_centre = tool_centre;
+      const auto path = make_joint_path(k, program, options);
+      ASSERT_TRUE(path.ok()) << path.error().to_string();
+      for (const JointMove& move : path->moves) ASSERT_FALSE(k.violation(move.to));
+      EXPECT_NEAR(std::abs(path->moves.back().to.rotary[0] - path->moves[0].to.rotary[0]), geom::kPi, 0.01);
+      const auto [tip_off, axis_off] = measured(k, *path, poses, normal, tool_centre);
+      EXPECT_LE(tip_off, 1.05 * options.tolerance_mm);
+      EXPECT_LE(axis_off, 1.05 * options.axis_tolerance_rad);
+      EXPECT_LE(rotary_shares(k, path->moves).speed[0], 1 + 1e-9);
+      EXPECT_LT(path->moves.size(), 4000u);
+    }
+  }
+}
+
+// Under tool-centre-point control only the axis asks for points between.
+TEST(JointPath, ToolCentreNeedsFewerPoints) {
+  const Kinematics k = preset("xyzac-trunnion");
+  std::vector<cl::Pose> poses{{{60, 0, 10}, direction(0.2, -1)}, {{-20, 50, 0}, direction(0.7, 0.8)}};
+  cl::Program program;
+  program.add(cl::FeedRate{800});
+  program.add(cl::Rapid{poses[0]});
+  program.add(cl::Feed{poses[1]});
+  JointPathOptions options;
+  const auto joints = make_joint_path(k, program, options);
+  options.tool_centre = true;
+  const auto path = make_joint_path(k, program, options);
+  ASSERT_TRUE(joints.ok() && path.ok());
+  EXPECT_LT(path->moves.size(), joints->moves.size() / 2);
+  EXPECT_GT(path->moves.size(), 3u);
+  const Vec3 normal = unit(cross(poses[0].axis, poses[1].axis));
+  EXPECT_LE(measured(k, *path, poses, normal, true).second, 1.05 * options.axis_tolerance_rad);
+  double minutes = 0;
+  for (const JointMove& move : path->moves) minutes += move.minutes;
+  EXPECT_NEAR(minutes, geom::distance(poses[0].tip, poses[1].tip) / 800, 1e-9);
+}
+
+// A table that starts and stops abruptly: times grow until the change of its speed is what it bears, and
+// nothing else changes.
+TEST(JointPath, KeepsTheAccelerationOfATable) {
+  const Kinematics k = preset("xyza");
+  cl::Program program;
+  program.add(cl::FeedRate{2000});
+  const auto pose = [](double x, double turn) {
+    return cl::Pose{{x, 30 * std::sin(turn), 30 * std::cos(turn)}, {0, std::sin(turn), std::cos(turn)}};
+  };
+  program.add(cl::Rapid{pose(0, 0)});
+  double turn = 0;
+  for (int i = 1; i <= 90; ++i) {
+    if (i > 30 && i <= 60) turn += 0.02;
+    program.add(cl::Feed{pose(0.5 * i, turn)});
+  }
+  JointPathOptions options;
+  options.joint_linear = true;
+  const auto quick = make_joint_path(k, program, options);
+  options.keep_acceleration = true;
+  const auto kept = make_joint_path(k, program, options);
+  ASSERT_TRUE(quick.ok() && kept.ok());
+  ASSERT_EQ(quick->moves.size(), kept->moves.size());
+  EXPECT_GT(rotary_shares(k, quick->moves).acceleration[0], 2);
+  EXPECT_EQ(quick->acceleration_limited, 0u);
+  // Measured apart from the library: degrees, seconds.
+  double worst = 0, slower = 0;
+  std::size_t changed = 0;
+  for (std::size_t m = 1; m < kept->moves.size(); ++m) {
+    EXPECT_EQ(kept->moves[m].to, quick->moves[m].to);
+    EXPECT_GE(kept->moves[m].minutes, quick->moves[m].minutes);
+    changed += kept->moves[m].minutes > quick->moves[m].minutes ? 1 : 0;
+    slower += kept->moves[m].minutes - quick->moves[m].minutes;
+    if (m + 1 == kept->moves.size()) break;
+    const auto by = [&](std::size_t n) {
+      return geom::degrees(kept->moves[n].to.rotary[0] - kept->moves[n - 1].to.rotary[0]);
+    };
+    const double s0 = 60 * kept->moves[m].minutes, s1 = 60 * kept->moves[m + 1].minutes;
+    worst = std::max(worst, std::abs(by(m + 1) / s1 - by(m) / s0) / (0.5 * (s0 + s1)));
+  }
+  EXPECT_LE(worst, 500 * (1 + 1e-5));
+  EXPECT_EQ(changed, kept->acceleration_limited);
+  EXPECT_GT(changed, 1u);
+  EXPECT_LT(changed, 60u);  // only about the two places
+  EXPECT_LT(slower, 0.02);
+}
+
 TEST(JointPath, ErrorsNameMoveAndAxis) {
   auto machine = *model::find_machine("xyzac-trunnion");
   const auto k = Kinematics::make(machine);

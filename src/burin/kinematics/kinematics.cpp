@@ -16,9 +16,9 @@ using geom::Vec3;
 constexpr Vec3 kUp{0, 0, 1};
 // Directions in machine files have this much rounding.
 constexpr double kDirection = 1e-9;
-// Sine of the angle to the first rotary axis below which that axis does not matter: what is left of the tool
-// axis moves by less than 1e-9 whatever the first axis does.
-constexpr double kSingular = 1e-9;
+// Sine of the angle to the first rotary axis below which that axis does not matter: the tool axis goes astray
+// by at most twice that, 1e-9, whatever the first axis does.
+constexpr double kSingular = 5e-10;
 // A tool axis is unreachable when it misses what the machine can do by more than this (CL files keep 1e-6).
 constexpr double kReach = 5e-6;
 // Beyond a limit by less than the control's resolution is not beyond it.
@@ -143,59 +143,87 @@ cl::Pose Kinematics::forward(const Joints& joints) const {
   return pose;
 }
 
+Kinematics::Turns Kinematics::turns_to(Vec3 u) const {
+  Turns turns;
+  if (!(dot(u, u) > 0.5)) return turns;  // no direction
+  if (rotary_count_ == 0) {
+    turns.count = norm(u - kUp) <= kReach ? 1 : 0;
+    return turns;
+  }
+  const Vec3 a = rotary_[0].direction;
+  if (rotary_count_ == 1) {
+    if (!(std::abs(dot(a, u) - dot(a, kUp)) <= kReach)) return turns;
+    turns.count = 1;
+    turns.free[0] = norm(geom::cross(a, u)) < kSingular;
+    if (!turns.free[0]) turns.angles[0][0] = sign(0) * angle_about(a, kUp, u);
+    return turns;
+  }
+  // v = R2 z is as far along a as u is, and as far along b as z is.
+  const Vec3 b = rotary_[1].direction, ab = geom::cross(a, b);
+  const double c = dot(a, b), along_a = dot(a, u), along_b = dot(b, kUp), det = dot(ab, ab);
+  const double alpha = (along_a - c * along_b) / det, beta = (along_b - c * along_a) / det;
+  // What is left of |v|^2 = 1 for ab, written so that it keeps its digits where u nearly runs along a:
+  // det (1 - |alpha a + beta b|^2) = |a x u|^2 |b x z|^2 - (c - along_a along_b)^2.
+  const double across_a = norm(geom::cross(a, u)), across_b = norm(geom::cross(b, kUp));
+  const double short_of = across_a * across_a / (1 + std::abs(along_a));  // 1 - |along_a|
+  const double skew = along_a > 0 ? (c - along_b) + along_b * short_of : (c + along_b) - along_b * short_of;
+  const double rest = (across_a * across_a * across_b * across_b - skew * skew) / det;
+  if (!(rest >= -kReach)) return turns;
+  const double gamma = std::sqrt(std::max(0.0, rest) / det);
+  turns.free = {across_a < kSingular, across_b < kSingular};
+  for (const double side : {1.0, -1.0}) {
+    const Vec3 v = alpha * a + beta * b + (side * gamma) * ab;
+    std::array<double, 2>& angles = turns.angles[static_cast<std::size_t>(turns.count++)];
+    if (!turns.free[0]) angles[0] = sign(0) * angle_about(a, v, u);
+    if (!turns.free[1]) angles[1] = sign(1) * angle_about(b, kUp, v);
+    if (gamma == 0) break;
+  }
+  return turns;
+}
+
+Joints Kinematics::with_rotary(const Point3& tip, const std::array<double, 2>& rotary) const {
+  const Point3 p = to_machine(tip, rotary);
+  const Vec3 offset = machine_.pivot_length * (head_axis(rotary) - kUp);
+  return {{p.x + offset.x, p.y + offset.y, p.z + offset.z}, rotary};
+}
+
+Solutions Kinematics::inverse_all(const cl::Pose& pose, const Joints& free) const {
+  Turns turns = turns_to(unit(pose.axis));
+  Solutions solutions;
+  solutions.count = turns.free[0] || turns.free[1] ? std::min(turns.count, 1) : turns.count;
+  solutions.free = turns.free;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(solutions.count); ++i) {
+    for (std::size_t k = 0; k < 2; ++k)
+      if (turns.free[k]) turns.angles[i][k] = free.rotary[k];
+    solutions.joints[i] = with_rotary(pose.tip, turns.angles[i]);
+  }
+  return solutions;
+}
+
 Result<Joints> Kinematics::inverse(const cl::Pose& pose, const Joints& near) const {
-  const auto missed = [&] {
+  const Turns turns = turns_to(unit(pose.axis));
+  if (turns.count == 0)
     return unsupported(machine_.name, "cannot bring the tool axis to (" + format_fixed(pose.axis.x, 6) +
                                           ", " + format_fixed(pose.axis.y, 6) + ", " +
                                           format_fixed(pose.axis.z, 6) + ")");
-  };
-  const Vec3 u = unit(pose.axis);
   std::array<double, 2> rotary{};
-  if (rotary_count_ == 0) {
-    if (norm(u - kUp) > kReach) return missed();
-  } else if (rotary_count_ == 1) {
-    const Vec3 a = rotary_[0].direction;
-    if (std::abs(dot(a, u) - dot(a, kUp)) > kReach) return missed();
-    const bool useless = norm(geom::cross(a, u)) < kSingular;
-    rotary[0] =
-        useless ? near.rotary[0] : placed(sign(0) * angle_about(a, kUp, u), near.rotary[0], rotary_[0]);
-  } else {
-    // v = R2 z is as far along a as u is, and as far along b as z is.
-    const Vec3 a = rotary_[0].direction, b = rotary_[1].direction, ab = geom::cross(a, b);
-    const double c = dot(a, b), along_a = dot(a, u), along_b = dot(b, kUp), det = 1 - c * c;
-    const double alpha = (along_a - c * along_b) / det, beta = (along_b - c * along_a) / det;
-    const double rest = (1 - alpha * alpha - beta * beta - 2 * alpha * beta * c) / dot(ab, ab);
-    if (rest < -kReach) return missed();
-    const double gamma = std::sqrt(std::max(0.0, rest));
-    std::optional<double> best;
-    for (const double side : {1.0, -1.0}) {
-      const Vec3 v = alpha * a + beta * b + (side * gamma) * ab;
-      std::array<double, 2> angles{};
-      const bool first_useless = norm(geom::cross(a, u)) < kSingular;
-      const bool second_useless = norm(geom::cross(b, kUp)) < kSingular;
-      angles[0] =
-          first_useless ? near.rotary[0] : placed(sign(0) * angle_about(a, v, u), near.rotary[0], rotary_[0]);
-      angles[1] = second_useless ? near.rotary[1]
-                                 : placed(sign(1) * angle_about(b, kUp, v), near.rotary[1], rotary_[1]);
-      double cost = 0;
-      for (std::size_t i = 0; i < 2; ++i) {
-        cost = std::max(cost, std::abs(angles[i] - near.rotary[i]));
-        const double lo = geom::radians(rotary_[i].min) - kLimitSlack;
-        const double hi = geom::radians(rotary_[i].max) + kLimitSlack;
-        if (angles[i] < lo || angles[i] > hi) cost += 1e6;
-      }
-      if (!best || cost < *best) {
-        best = cost;
-        rotary = angles;
-      }
+  std::optional<double> best;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(turns.count); ++n) {
+    std::array<double, 2> angles = turns.angles[n];
+    double cost = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rotary_count_); ++i) {
+      angles[i] = turns.free[i] ? near.rotary[i] : placed(angles[i], near.rotary[i], rotary_[i]);
+      cost = std::max(cost, std::abs(angles[i] - near.rotary[i]));
+      const double lo = geom::radians(rotary_[i].min) - kLimitSlack;
+      const double hi = geom::radians(rotary_[i].max) + kLimitSlack;
+      if (angles[i] < lo || angles[i] > hi) cost += 1e6;
+    }
+    if (!best || cost < *best) {
+      best = cost;
+      rotary = angles;
     }
   }
-  Joints joints;
-  joints.rotary = rotary;
-  const Point3 p = to_machine(pose.tip, rotary);
-  const Vec3 offset = machine_.pivot_length * (head_axis(rotary) - kUp);
-  joints.linear = {p.x + offset.x, p.y + offset.y, p.z + offset.z};
-  return joints;
+  return with_rotary(pose.tip, rotary);
 }
 
 std::optional<LimitViolation> Kinematics::violation(const Joints& joints) const {

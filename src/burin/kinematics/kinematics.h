@@ -24,6 +24,15 @@ struct Joints {
   bool operator==(const Joints&) const = default;
 };
 
+/// All ways to take a pose, but for whole turns: at most two.
+struct Solutions {
+  std::array<Joints, 2> joints;  ///< rotary angles in [-pi, pi], those that do not matter as they were asked
+  int count = 0;                 ///< 0: the machine cannot bring the tool axis there, whatever its limits
+  /// Rotary axes that do not turn the tool axis there (it runs along them): any angle of theirs is a
+  /// solution. With one of them free the two solutions are one.
+  std::array<bool, 2> free{};
+};
+
 /// An axis beyond its travel.
 struct LimitViolation {
   char letter = 0;
@@ -45,11 +54,17 @@ class Kinematics {
 
   cl::Pose forward(const Joints& joints) const;
 
+  /// `free`: the angles of axes that do not matter. Limits of travel are not looked at.
+  Solutions inverse_all(const cl::Pose& pose, const Joints& free = {}) const;
+
   /// The solution nearest to `near` by the larger of the two turns (whole turns included, within the limits
   /// where there are some); where the first rotary axis does not matter (u along it) it stays as it is. Error
   /// (unsupported): a tool axis that this machine cannot reach, whatever its limits. Limits of travel are not
   /// checked unless a whole turn less or more keeps them; see violation().
   Result<Joints> inverse(const cl::Pose& pose, const Joints& near) const;
+
+  /// The joints that hold the tip there with the rotary axes at these angles.
+  Joints with_rotary(const geom::Point3& tip, const std::array<double, 2>& rotary) const;
 
   /// The first axis beyond its limits, by more than rounding.
   std::optional<LimitViolation> violation(const Joints& joints) const;
@@ -59,6 +74,13 @@ class Kinematics {
   geom::Point3 to_part(geom::Point3 p, const std::array<double, 2>& rotary) const;
   geom::Vec3 head_axis(const std::array<double, 2>& rotary) const;
   double sign(int i) const;
+  /// Rotary angles that bring the tool axis to u.
+  struct Turns {
+    std::array<std::array<double, 2>, 2> angles{};
+    int count = 0;
+    std::array<bool, 2> free{};
+  };
+  Turns turns_to(geom::Vec3 u) const;
 
   model::Machine machine_;
   int rotary_count_ = 0;

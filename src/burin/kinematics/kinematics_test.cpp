@@ -82,6 +82,73 @@ TEST(Kinematics, ForwardUndoesInverseOnEveryPreset) {
   }
 }
 
+// All solutions: each leads back to the pose, they differ, and the one inverse() takes is among them.
+TEST(Kinematics, AllSolutionsLeadBack) {
+  for (const std::string& name : kPresets) {
+    const Kinematics k = preset(name);
+    Random random(17);
+    for (int n = 0; n < 5000; ++n) {
+      const Joints joints = random_joints(k, random), near = random_joints(k, random);
+      const cl::Pose pose = k.forward(joints);
+      const Solutions all = k.inverse_all(pose);
+      ASSERT_EQ(all.count, k.rotary_count() == 2 ? 2 : 1) << name;
+      const auto turn_off = [](double a, double b) { return std::abs(std::remainder(a - b, 2 * geom::kPi)); };
+      bool truth = false, nearest = false;
+      const Joints chosen = *k.inverse(pose, near);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(all.count); ++i) {
+        const Joints& j = all.joints[i];
+        ASSERT_LT(distance(k.forward(j), pose), 1e-9) << name << " case " << n;
+        for (std::size_t r = 0; r < 2; ++r) ASSERT_LE(std::abs(j.rotary[r]), geom::kPi);
+        const auto same = [&](const Joints& other) {
+          return turn_off(j.rotary[0], other.rotary[0]) < 1e-6 &&
+                 turn_off(j.rotary[1], other.rotary[1]) < 1e-6;
+        };
+        truth |= same(joints);
+        nearest |= same(chosen);
+      }
+      ASSERT_TRUE(truth && nearest) << name << " case " << n;
+      if (all.count == 2) {
+        ASSERT_GT(std::max(turn_off(all.joints[0].rotary[0], all.joints[1].rotary[0]),
+                           turn_off(all.joints[0].rotary[1], all.joints[1].rotary[1])),
+                  1e-6);
+      }
+    }
+    EXPECT_EQ(k.inverse_all({{0, 0, 0}, {0.6, 0, 0.8}}).count, k.rotary_count() == 2 ? 2 : 0) << name;
+    Joints free;
+    free.rotary = {0.7, 0.7};
+    const Solutions upright = k.inverse_all({{5, 6, 7}, {0, 0, 1}}, free);
+    EXPECT_EQ(upright.count, 1) << name;
+    if (k.rotary_count() == 2) {
+      EXPECT_TRUE(upright.free[0]) << name;
+      EXPECT_EQ(upright.joints[0].rotary[0], 0.7) << name;
+      EXPECT_LT(distance(k.forward(upright.joints[0]), {{5, 6, 7}, {0, 0, 1}}), 1e-12);
+    }
+  }
+}
+
+// A tool axis that nearly runs along the first rotary axis keeps all its digits.
+TEST(Kinematics, NextToAPoleNothingIsLost) {
+  Random random(23);
+  std::vector<Kinematics> machines;
+  for (const char* name : {"xyzac-trunnion", "xyzbc-trunnion", "xyzbc-head-table", "propeller-head-head"})
+    machines.push_back(preset(name));
+  // A nutating head: its pole is where the second axis has turned half round.
+  model::Machine nutating = *model::find_machine("propeller-head-head");
+  for (model::Axis& axis : nutating.axes)
+    if (axis.letter == 'B') axis.direction = unit(Vec3{0, 1, 1}), axis.min = -200, axis.max = 200;
+  machines.push_back(*Kinematics::make(nutating));
+  for (const Kinematics& k : machines) {
+    for (int n = 0; n < 4000; ++n) {
+      const double tilt = std::pow(10.0, random.in(-12, 0)), yaw = random.in(-3, 3);
+      const cl::Pose pose{{random.in(-100, 100), random.in(-100, 100), random.in(-100, 100)},
+                          {std::sin(tilt) * std::cos(yaw), std::sin(tilt) * std::sin(yaw), std::cos(tilt)}};
+      const auto back = k.inverse(pose, random_joints(k, random));
+      ASSERT_TRUE(back.ok());
+      ASSERT_LT(distance(k.forward(*back), pose), 1.1e-9) << k.machine().name << " tilt " << tilt;
+    }
+  }
+}
+
 // The machines as the specification writes them: p' = Rx(A) Rz(C) p and so on, X, Y, Z = p' + L u' - (0, 0,
 // L).
 TEST(Kinematics, PresetsAgreeWithTheirFormulas) {

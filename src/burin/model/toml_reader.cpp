@@ -130,4 +130,43 @@ const toml::table& TomlReader::subtable(const toml::table& table, std::string_vi
   return empty_;
 }
 
+bool TomlReader::flag(const toml::table& table, std::string_view key, bool fallback) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return fallback;
+  if (!node->is_boolean()) {
+    fail(*node, "\"" + std::string(key) + "\" is not true or false (true, false)");
+    return fallback;
+  }
+  return *node->value<bool>();
+}
+
+std::pair<double, double> TomlReader::range(const toml::table& table, std::string_view key, double min,
+                                            double max, std::pair<double, double> fallback) {
+  const toml::node* node = table.get(key);
+  if (node == nullptr) return fallback;
+  const std::string name = "\"" + std::string(key) + "\"";
+  const std::string accepted =
+      " ([lo, hi], both from " + format_shortest(min) + " to " + format_shortest(max) + ", lo not above hi)";
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != 2) {
+    fail(*node, name + " is not a range" + accepted);
+    return fallback;
+  }
+  double ends[2] = {};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const toml::node& entry = *array->get(i);
+    ends[i] = entry.is_number() ? *entry.value<double>() : std::nan("");
+    if (ends[i] >= min && ends[i] <= max) continue;
+    fail(entry,
+         name + (entry.is_number() ? " is out of range" : " holds something that is no number") + accepted);
+    return fallback;
+  }
+  if (ends[0] > ends[1]) {
+    fail(*node, name + " is empty: " + format_shortest(ends[0]) + " is above " + format_shortest(ends[1]) +
+                    accepted);
+    return fallback;
+  }
+  return {ends[0], ends[1]};
+}
+
 }  // namespace burin::model

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "burin/base/result.h"
@@ -33,6 +34,25 @@ class TomlReader {
   /// The entries of an array of tables; nothing when the key is missing.
   std::vector<const toml::table*> tables(const toml::table& table, std::string_view key);
   const toml::table& subtable(const toml::table& table, std::string_view key);
+  bool flag(const toml::table& table, std::string_view key, bool fallback);
+  /// Two finite numbers in [min, max], the first not above the second.
+  std::pair<double, double> range(const toml::table& table, std::string_view key, double min, double max,
+                                  std::pair<double, double> fallback);
+  /// One of a few words, each standing for a value.
+  template <class T>
+  T choice(const toml::table& table, std::string_view key,
+           const std::vector<std::pair<std::string, T>>& choices, T fallback) {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return fallback;
+    const std::string word = text(table, key);
+    std::string list;
+    for (const auto& [name, value] : choices) {
+      if (name == word) return value;
+      list += (list.empty() ? "" : ", ") + name;
+    }
+    fail(*node, "\"" + std::string(key) + "\" is \"" + word + "\" (" + list + ")");
+    return fallback;
+  }
 
   void fail(const toml::node& node, std::string message, ErrorCode code = ErrorCode::syntax);
   const std::optional<Error>& error() const { return error_; }

@@ -80,10 +80,10 @@ Result<void> ModalMachine::carry_out() {
   if (block_->skip)
     once(Severity::info, "block_skip", "",
          "blocks with '/' are carried out (the control's switch is taken as off)", nullptr);
-  for (auto step :
-       {&ModalMachine::refused, &ModalMachine::program_number, &ModalMachine::comment, &ModalMachine::modes,
-        &ModalMachine::feed_and_speed, &ModalMachine::tool, &ModalMachine::switches, &ModalMachine::dwell,
-        &ModalMachine::rotary, &ModalMachine::move, &ModalMachine::left_over, &ModalMachine::stop}) {
+  for (auto step : {&ModalMachine::refused, &ModalMachine::program_number, &ModalMachine::comment,
+                    &ModalMachine::modes, &ModalMachine::tool_length, &ModalMachine::feed_and_speed,
+                    &ModalMachine::tool, &ModalMachine::switches, &ModalMachine::dwell, &ModalMachine::rotary,
+                    &ModalMachine::move, &ModalMachine::left_over, &ModalMachine::stop}) {
     if (auto ok = (this->*step)(); !ok) return ok;
   }
   return {};
@@ -152,6 +152,23 @@ Result<void> ModalMachine::modes() {
 }
 
 /// The first work offset is the part frame; another one would need its distance from the first.
+/// G43.4 and what ends it: the same place in other coordinates.
+Result<void> ModalMachine::tool_length() {
+  const Word* word = words_.in(Group::tool_length);
+  if (!word) return {};
+  const bool on = word->code() == 4340;
+  if (on && (!options_.machine || options_.machine->rotary_count() == 0))
+    return error(ErrorCode::unsupported,
+                 "G43.4 (tool-centre-point control) is not read without a machine of rotary axes (G43)",
+                 word);
+  if (on == state_.tool_centre) return {};
+  const kinematics::Joints before = joints();
+  state_.tool_centre = on;
+  state_.position = on ? options_.machine->forward(before).tip
+                       : geom::Point3{before.linear[0], before.linear[1], before.linear[2]};
+  return {};
+}
+
 Result<void> ModalMachine::work_offset() {
   const Word* word = words_.in(Group::work_offset);
   if (!word) return {};
@@ -419,17 +436,19 @@ Result<void> ModalMachine::straight_move() {
 }
 
 kinematics::Joints ModalMachine::joints() const {
+  if (state_.tool_centre) return options_.machine->with_rotary(state_.position, state_.rotary);
   return {{state_.position.x, state_.position.y, state_.position.z}, state_.rotary};
 }
 
 cl::Pose ModalMachine::pose(const geom::Point3& position) const {
   if (!options_.machine) return {position};
+  if (state_.tool_centre) return {position, options_.machine->forward({{}, state_.rotary}).axis};
   return options_.machine->forward({{position.x, position.y, position.z}, state_.rotary});
 }
 
 /// Length of the tip's way on the part from where the axes stand before this block.
 double ModalMachine::way_to(const geom::Point3& end) const {
-  if (!options_.machine) return geom::distance(state_.position, end);
+  if (!options_.machine || state_.tool_centre) return geom::distance(state_.position, end);
   kinematics::Joints from = joints();
   from.rotary = rotary_before_;
   return kinematics::tip_motion(*options_.machine, from, {{end.x, end.y, end.z}, state_.rotary}).length;

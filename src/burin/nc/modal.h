@@ -69,6 +69,7 @@ class ModalMachine {
   Result<void> program_number();
   Result<void> comment();
   Result<void> modes();
+  Result<void> tool_length();
   Result<void> work_offset();
   Result<void> feed_and_speed();
   Result<void> tool();

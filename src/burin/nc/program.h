@@ -80,6 +80,7 @@ struct ModalState {
   bool incremental = false;
   bool arc_centers_absolute = false;  ///< G90.1
   bool inverse_time = false;          ///< G93
+  bool tool_centre = false;           ///< G43.4: X, Y, Z are the tip on the part
   double feed = 0;                    ///< mm/min
   double spindle_or_power = 0;        ///< S word
   int tool = 0;
@@ -104,15 +105,16 @@ struct InterpretOptions {
   const kinematics::Kinematics* machine = nullptr;
 };
 
-/// G0 G1 G2 G3 (I J K, R), G4, G17-G19, G20 G21, G90 G91 (and .1), G93 (becomes mm/min of the tip) G94,
-/// M0-M9, M30, F S T, G40/G49/G54/G61/G64/G80 and the like that do not change where the tool goes. `source`
-/// of the records is the line. Errors: codes that would move the tool in a way not understood (unsupported),
-/// damaged blocks (syntax), impossible arcs (geometry), all with line and column.
+/// G43.4 (tool-centre-point control, with a machine of rotary axes; until G49 or G43): X, Y, Z are the tip on
+/// the part. G0 G1 G2 G3 (I J K, R), G4, G17-G19, G20 G21, G90 G91 (and .1), G93 (becomes mm/min of the tip)
+/// G94, M0-M9, M30, F S T, G40/G49/G54/G61/G64/G80 and the like that do not change where the tool goes.
+/// `source` of the records is the line. Errors: codes that would move the tool in a way not understood
+/// (unsupported), damaged blocks (syntax), impossible arcs (geometry), all with line and column.
 Result<cl::Program> interpret(std::string_view text, const InterpretOptions& options,
                               Diagnostics& diagnostics);
 
 /// What the machine does: joints[i] belongs to motion i of the program (they run linearly from one to the
-/// next but for arcs).
+/// next but for arcs; under G43.4 only the rotary ones do, the tip runs straight on the part).
 struct JointProgram {
   cl::Program program;
   std::vector<kinematics::Joints> joints;

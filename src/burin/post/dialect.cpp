@@ -123,6 +123,8 @@ std::vector<Key> keys() {
       {"tool_change", text(&D::tool_change, {"number"})},
       {"tool_change_supported", flag(&D::tool_change_supported)},
       {"tool_length", text(&D::tool_length, {"number"})},
+      {"tcp_on", text(&D::tcp_on, {"number"})},
+      {"tcp_off", text(&D::tcp_off)},
       {"coolant_on", text(&D::coolant_on)},
       {"coolant_off", text(&D::coolant_off)},
       {"stop", text(&D::stop)},
@@ -171,6 +173,8 @@ Result<Dialect> from_table(const toml::table& table, const std::string& file_nam
     return Error{ErrorCode::syntax, "a dialect without a name (name = \"...\")", {.file = file_name}};
   if (dialect.beam_on.empty() != dialect.beam_off.empty())
     return Error{ErrorCode::syntax, "only one of beam_on and beam_off (both, or none)", {.file = file_name}};
+  if (dialect.tcp_on.empty() != dialect.tcp_off.empty())
+    return Error{ErrorCode::syntax, "only one of tcp_on and tcp_off (both, or none)", {.file = file_name}};
   return dialect;
 }
 

@@ -39,6 +39,9 @@ struct Dialect {
   std::string tool_change = "T{number} M6";
   bool tool_change_supported = true;  ///< false: reported and left out (GRBL)
   std::string tool_length;            ///< goes with the first Z after a tool change, e.g. "G43 H{number}"
+  /// Tool-centre-point control: X, Y, Z of the tip on the part from here on, e.g. "G43.4 H{number}". Empty:
+  /// the control has none.
+  std::string tcp_on, tcp_off;
   std::string coolant_on = "M8", coolant_off = "M9";
   std::string stop = "M0", optional_stop = "M1";
   /// The control rejects an arc whose start and end radius differ by more than max(absolute, relative *

@@ -18,8 +18,6 @@ namespace {
 using geom::Point3;
 using geom::Vec3;
 
-// Arcs of other systems may start and end on radii that differ by what controls take (0.0127 mm).
-constexpr double kArcInput_mm = 0.013;
 // Directions from files with six decimals.
 constexpr double kAxisTolerance = 2e-6;
 constexpr double kMaxCenter_mm = 1e9;
@@ -42,21 +40,13 @@ class Emitter : NcWriter {
       : NcWriter(program, dialect, options, diagnostics) {}
 
   Result<NcText> run() {
-    if (options_.program_number < 1 || options_.program_number > 9999)
-      return Error{
-          ErrorCode::usage, "program number " + std::to_string(options_.program_number) + " (1 to 9999)", {}};
-    if (auto ok = cl::validate(program_, kArcInput_mm); !ok) return ok.error();
     if (program_.from) exact_ = program_.from->tip;
-    if (dialect_.percent) raw_line("%");
-    if (auto ok = frame(dialect_.header); !ok) return ok.error();
+    if (auto ok = begin(); !ok) return ok.error();
     for (; index_ < program_.records.size(); ++index_) {
       auto ok = std::visit([this](const auto& record) { return put(record); }, program_.records[index_]);
       if (!ok) return ok.error();
     }
-    index_ = NcText::kNoRecord;
-    if (auto ok = frame(dialect_.footer); !ok) return ok.error();
-    if (dialect_.percent) raw_line("%");
-    return std::move(out_);
+    return finish();
   }
 
  private:

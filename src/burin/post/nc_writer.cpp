@@ -8,6 +8,22 @@
 
 namespace burin::post {
 
+Result<void> NcWriter::begin() {
+  if (options_.program_number < 1 || options_.program_number > 9999)
+    return Error{
+        ErrorCode::usage, "program number " + std::to_string(options_.program_number) + " (1 to 9999)", {}};
+  if (auto ok = cl::validate(program_, kArcInput_mm); !ok) return ok;
+  if (dialect_.percent) raw_line("%");
+  return frame(dialect_.header);
+}
+
+Result<NcText> NcWriter::finish() {
+  index_ = NcText::kNoRecord;
+  if (auto ok = frame(dialect_.footer); !ok) return ok.error();
+  if (dialect_.percent) raw_line("%");
+  return std::move(out_);
+}
+
 Error NcWriter::error(ErrorCode code, const std::string& what) const {
   std::string place = "record " + std::to_string(index_);
   if (index_ < program_.records.size() && cl::is_motion(program_.records[index_]))

@@ -19,6 +19,14 @@ class NcWriter {
            Diagnostics& diagnostics)
       : program_(program), dialect_(dialect), options_(options), diagnostics_(diagnostics) {}
 
+  /// Arcs of other systems may start and end on radii that differ by what controls take (0.0127 mm).
+  static constexpr double kArcInput_mm = 0.013;
+
+  /// Checks program number and program; the lines before the first record.
+  Result<void> begin();
+  /// The lines behind the last record.
+  Result<NcText> finish();
+
   Error error(ErrorCode code, const std::string& what) const;
   void raw_line(const std::string& text);
   Result<void> line(std::string text, bool has_comment = false);

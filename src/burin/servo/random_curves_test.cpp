@@ -133,7 +133,7 @@ void expect_kept(std::uint64_t seed, Tally& tally) {
 }
 
 TEST(Plan, RandomCurvesKeepTheirLimits) {
-  const int n = cases(5000, 300), first = first_case();
+  const int n = cases(2500, 300), first = first_case();
   Tally tally;
   for (int i = first; i - first < n && !HasFatalFailure(); ++i)
     expect_kept<test::RandomCurves>(static_cast<std::uint64_t>(i), tally);

@@ -3,18 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "burin/base/embedded.h"
-#include "burin/base/text.h"
 #include "burin/view/cycle_track.h"
 #include "burin/view/encode.h"
+#include "burin/view/page.h"
 #include "burin/view/surface_mesh.h"
-
-namespace burin::embedded {
-std::vector<File> cycle_pages();
-}
 
 namespace burin::view {
 namespace {
@@ -25,8 +19,6 @@ using nlohmann::json;
 constexpr std::size_t kMeshPoints = 90'000;
 constexpr std::size_t kTrackPoints = 80'000;
 constexpr std::size_t kRows = 10'000;
-constexpr std::size_t kProgramBytes = 500'000;
-constexpr std::size_t kWarnings = 2'000;
 /// Surfaces (patches and joined ones) drawn; further ones are only counted.
 constexpr std::size_t kMeshes = 4'000;
 constexpr std::size_t kUnjoined = 500;
@@ -35,35 +27,19 @@ json point_json(geom::Point3 p) {
   return {p.x, p.y, p.z};
 }
 
-json number_or_null(double v) {
-  return std::isfinite(v) ? json(v) : json(nullptr);
-}
-
-std::uint16_t scaled(double v, double lo, double size, double steps) {
-  if (!(size > 0) || !std::isfinite(v)) return 0;
-  return static_cast<std::uint16_t>(std::lround(std::clamp((v - lo) / size, 0.0, 1.0) * steps));
-}
-
-constexpr double kSteps16 = 65535, kSteps15 = 32767, kSteps7 = 127;
-
-/// Of -1 to 1.
-std::int16_t signed16(double v) {
-  return static_cast<std::int16_t>(std::lround(std::clamp(v, -1.0, 1.0) * kSteps15));
-}
-
 /// Points as 16 bit numbers in the box of the mesh, normals as 8 bit.
 json mesh_json(const SurfaceMesh& mesh) {
   std::vector<std::uint16_t> points;
   std::vector<std::int8_t> normals;
   const geom::Vec3 size = mesh.box.empty() ? geom::Vec3{} : mesh.box.hi - mesh.box.lo;
   for (const geom::Point3 p : mesh.points) {
-    points.push_back(scaled(p.x, mesh.box.lo.x, size.x, kSteps16));
-    points.push_back(scaled(p.y, mesh.box.lo.y, size.y, kSteps16));
-    points.push_back(scaled(p.z, mesh.box.lo.z, size.z, kSteps16));
+    points.push_back(scaled(p.x, mesh.box.lo.x, size.x));
+    points.push_back(scaled(p.y, mesh.box.lo.y, size.y));
+    points.push_back(scaled(p.z, mesh.box.lo.z, size.z));
   }
   for (const geom::Vec3 n : mesh.normals) {
     for (const double c : {n.x, n.y, n.z}) {
-      normals.push_back(static_cast<std::int8_t>(std::lround(std::clamp(c, -1.0, 1.0) * kSteps7)));
+      normals.push_back(signed8(c));
     }
   }
   return {{"nu", mesh.u.size()}, {"nv", mesh.v.size()},           {"iu", mesh.iso_u},
@@ -225,9 +201,9 @@ json track_json(const Track& track, geom::Point3 origin) {
     index.push_back(p.index);
     for (const double c : {p.normal.x, p.normal.y, p.normal.z}) normals.push_back(signed16(c));
     touches = touches || p.normal.z != 1;
-    feed.push_back(scaled(p.feed, 0, track.feed_max, kSteps16));
-    axis.push_back(scaled(p.axis, 0, track.axis_max, kSteps16));
-    lift.push_back(scaled(p.lift, 0, track.lift_max, kSteps16));
+    feed.push_back(scaled(p.feed, 0, track.feed_max));
+    axis.push_back(scaled(p.axis, 0, track.axis_max));
+    lift.push_back(scaled(p.lift, 0, track.lift_max));
     tangential.push_back(signed16(track.tangential_max > 0 ? p.tangential / track.tangential_max : 0));
   }
   std::vector<std::int32_t> runs;
@@ -277,37 +253,16 @@ json rows_json(const Track& track) {
   return {{"n", track.rows.size()}, {"ids", base64(ids)}, {"figures", base64(figures)}};
 }
 
-json warnings_json(const Diagnostics* diagnostics) {
-  json list = json::array();
-  if (!diagnostics) return list;
-  for (const Warning& w : diagnostics->warnings()) {
-    if (list.size() >= kWarnings) break;
-    json one = {{"severity", w.severity == Severity::left_out ? "left_out" : "info"},
-                {"code", w.code},
-                {"message", w.message},
-                {"entity", w.where.entity}};
-    if (w.position_mm) one["position"] = {(*w.position_mm)[0], (*w.position_mm)[1], (*w.position_mm)[2]};
-    list.push_back(std::move(one));
-  }
-  return list;
-}
-
-/// The beginning of a long program, whole lines.
-std::string shortened(const std::string& program) {
-  if (program.size() <= kProgramBytes) return program;
-  const std::size_t end = program.rfind('\n', kProgramBytes);
-  return program.substr(0, end == std::string::npos ? kProgramBytes : end + 1);
-}
-
 json page_json(const CyclePicture& picture) {
   Meshes meshes;
   const std::vector<GroupMeshes> ids = collect_meshes(picture, meshes);
   const Track track = make_track(picture, {kTrackPoints, kRows});
   const geom::Box3 box = scene_box(picture, ids, meshes, track);
   const geom::Point3 origin = lerp(box.lo, box.hi, 0.5);
-  json data = {{"title", picture.title},      {"command", picture.command_line},
-               {"period", picture.period_s},  {"accelLimit", number_or_null(picture.accel_limit_mm_s2)},
-               {"lo", point_json(box.lo)},    {"hi", point_json(box.hi)},
+  json data = {{"period", picture.period_s},
+               {"accelLimit", number_or_null(picture.accel_limit_mm_s2)},
+               {"lo", point_json(box.lo)},
+               {"hi", point_json(box.hi)},
                {"origin", point_json(origin)}};
   data["groups"] = json::array();
   for (std::size_t g = 0; g < picture.groups.size(); ++g) {
@@ -317,23 +272,15 @@ json page_json(const CyclePicture& picture) {
   for (const SurfaceMesh& m : meshes.meshes()) data["meshes"].push_back(mesh_json(m));
   data["track"] = track_json(track, origin);
   data["rows"] = rows_json(track);
-  data["figures"] = json::array();
-  for (const CyclePicture::Figure& f : picture.figures) data["figures"].push_back({f.group, f.name, f.value});
-  data["warnings"] = warnings_json(picture.diagnostics);
-  data["warningCount"] = picture.diagnostics ? picture.diagnostics->warnings().size() : 0;
-  data["nc"] = shortened(picture.nc_text);
-  data["ncLines"] = std::count(picture.nc_text.begin(), picture.nc_text.end(), '\n');
+  data["figures"] = figures_json(picture.figures);
+  put_texts(data, picture.title, picture.command_line, picture.diagnostics, picture.nc_text);
   return data;
 }
 
 }  // namespace
 
 std::string cycle_html(const CyclePicture& picture) {
-  // Text from files may hold damaged UTF-8: replaced rather than thrown at.
-  const std::string data =
-      script_safe(page_json(picture).dump(-1, ' ', false, json::error_handler_t::replace));
-  const std::string title = html_text(picture.title);
-  return fill_template(embedded::cycle_pages().front().text, {{"@TITLE@", title}, {"@DATA@", data}});
+  return make_page("cycle.html", picture.title, page_json(picture));
 }
 
 }  // namespace burin::view

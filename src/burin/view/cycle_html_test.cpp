@@ -5,12 +5,12 @@
 
 #include <cmath>
 #include <cstring>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "burin/view/cycle_sample.h"
 #include "burin/view/cycle_track.h"
 #include "burin/view/encode.h"
+#include "burin/view/page_test_support.h"
 #include "burin/view/surface_mesh.h"
 #include "burin/view/track_labels.h"
 
@@ -19,29 +19,9 @@ namespace {
 
 using sample::Cover;
 
-std::string decode64(const std::string& text) {
-  static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  std::uint32_t bits = 0;
-  int have = 0;
-  for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string::npos) break;
-    bits = (bits << 6) | static_cast<std::uint32_t>(digit);
-    have += 6;
-    if (have >= 8) {
-      have -= 8;
-      out += static_cast<char>((bits >> have) & 0xffu);
-    }
-  }
-  return out;
-}
-
-nlohmann::json data_of(const std::string& page) {
-  const std::string open = "<script type=\"application/json\" id=\"data\">";
-  const std::size_t from = page.find(open) + open.size();
-  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
-}
+using test::data_of;
+using test::decode64;
+using test::expect_closed_page;
 
 TEST(Encode, Base64KnowsTheVectorsOfRfc4648) {
   const auto of = [](const std::string& s) { return base64(std::vector<std::uint8_t>(s.begin(), s.end())); };
@@ -305,16 +285,8 @@ TEST(Track, WithoutSetpointsTheMotionsAreDrawn) {
 TEST(CycleHtml, IsOnePageWhoseDataParsesAndCannotEscape) {
   const Cover cover(8);
   const std::string page = cycle_html(cover.picture());
-  for (const char* outside : {"src=", "http://", "https://", "@import", "url("}) {
-    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
-  }
-  // Two script elements and no more, whatever stands in the texts; the title holds a place holder as text.
-  for (const auto& [tag, wanted] :
-       {std::pair{"<script", 2u}, {"</script", 2u}, {"<title", 1u}, {"@DATA@", 2u}}) {
-    std::size_t n = 0;
-    for (std::size_t at = page.find(tag); at != std::string::npos; at = page.find(tag, at + 1)) ++n;
-    EXPECT_EQ(n, wanted) << tag;
-  }
+  expect_closed_page(page);
+  test::expect_balanced(page);
   EXPECT_NE(page.find("<title>cover &lt;&amp;&gt; &quot;@DATA@&quot;"), std::string::npos);
   const auto data = data_of(page);
   EXPECT_EQ(data["title"].get<std::string>().substr(0, 21), "cover <&> \"@DATA@\" \xef\xbf");

@@ -4,18 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "burin/base/embedded.h"
-#include "burin/base/text.h"
 #include "burin/view/encode.h"
+#include "burin/view/page.h"
 #include "burin/view/rotary_places.h"
 #include "burin/view/rotary_shape.h"
-
-namespace burin::embedded {
-std::vector<File> rotary_pages();
-}
 
 namespace burin::view {
 namespace {
@@ -28,53 +22,11 @@ constexpr std::size_t kPoints = 60'000;
 constexpr std::size_t kPoses = 80'000;
 constexpr std::size_t kSections = 160;
 constexpr std::size_t kOutlinePoints = 120'000;
-constexpr std::size_t kProgramBytes = 500'000;
-constexpr std::size_t kWarnings = 2'000;
 constexpr std::size_t kPlaces = 2'000;
 /// Sections are drawn within this share of the part's radius.
 constexpr double kOutlineShare = 5e-4;
 
-constexpr double kSteps16 = 65535, kSteps15 = 32767, kSteps7 = 127;
-
-json number_or_null(double v) {
-  return std::isfinite(v) ? json(v) : json(nullptr);
-}
-float single(double v) {
-  return std::isfinite(v) ? static_cast<float>(v) : 0.0f;
-}
-std::uint16_t scaled(double v, double lo, double size) {
-  if (!(size > 0) || !std::isfinite(v)) return 0;
-  return static_cast<std::uint16_t>(std::lround(std::clamp((v - lo) / size, 0.0, 1.0) * kSteps16));
-}
-template <class T>
-T part_of_one(double v, double steps) {
-  return static_cast<T>(std::lround(std::clamp(std::isfinite(v) ? v : 0.0, -1.0, 1.0) * steps));
-}
-
 // --- the part
-
-json shape_json(const rotary::Part& part) {
-  const Shape shape = drawn_shape(part, kTriangles);
-  geom::Box3 box;
-  for (const geom::Point3 p : shape.points) box.add(p);
-  if (box.empty()) box.add(geom::Point3{});
-  const geom::Vec3 size = box.hi - box.lo;
-  std::vector<std::uint16_t> points;
-  std::vector<std::int8_t> normals;
-  for (const geom::Point3 p : shape.points) {
-    points.push_back(scaled(p.x, box.lo.x, size.x));
-    points.push_back(scaled(p.y, box.lo.y, size.y));
-    points.push_back(scaled(p.z, box.lo.z, size.z));
-  }
-  for (const geom::Vec3 n : shape.normals)
-    for (const double c : {n.x, n.y, n.z}) normals.push_back(part_of_one<std::int8_t>(c, kSteps7));
-  return {{"triangles", shape.points.size() / 3},
-          {"of", part.mesh.triangles.size()},
-          {"lo", {box.lo.x, box.lo.y, box.lo.z}},
-          {"hi", {box.hi.x, box.hi.y, box.hi.z}},
-          {"p", base64(points)},
-          {"n", base64(normals)}};
-}
 
 json sections_json(const RotaryPicture& picture) {
   const std::vector<SectionPlace> places =
@@ -93,7 +45,7 @@ json sections_json(const RotaryPicture& picture) {
       if (spent > kOutlinePoints) break;
       sizes.push_back(static_cast<std::uint32_t>(loop.size()));
       for (const geom::Point2 p : loop)
-        for (const double c : {p.x, p.y}) yz.push_back(part_of_one<std::int16_t>(c / scale, kSteps15));
+        for (const double c : {p.x, p.y}) yz.push_back(signed16(c / scale));
     }
     list.push_back({places[i].x, places[i].path, base64(sizes), base64(yz)});
   }
@@ -160,7 +112,7 @@ json points_json(const RotaryPicture& picture, const Kept& kept) {
     }
     const rotary::Contact& c = p.place.contact;
     for (const double v : {c.p.x, c.p.y, c.p.z}) contact.push_back(single(v));
-    for (const double v : {c.n.x, c.n.y, c.n.z}) normal.push_back(part_of_one<std::int16_t>(v, kSteps15));
+    for (const double v : {c.n.x, c.n.y, c.n.z}) normal.push_back(signed16(v));
     theta.push_back(single(p.theta));
     initial.push_back(single(p.initial));
     plain.push_back(single(unsmoothed(p, picture.options->clearance)));
@@ -200,28 +152,7 @@ json places_json(const rotary::RotaryPlan& plan, const Kept& kept, std::size_t& 
   return list;
 }
 
-// --- texts
-
-json warnings_json(const Diagnostics* diagnostics) {
-  json list = json::array();
-  if (!diagnostics) return list;
-  for (const Warning& w : diagnostics->warnings()) {
-    if (list.size() >= kWarnings) break;
-    json one = {{"severity", w.severity == Severity::left_out ? "left_out" : "info"},
-                {"code", w.code},
-                {"message", w.message},
-                {"entity", w.where.entity}};
-    if (w.position_mm) one["position"] = {(*w.position_mm)[0], (*w.position_mm)[1], (*w.position_mm)[2]};
-    list.push_back(std::move(one));
-  }
-  return list;
-}
-
-std::string shortened(const std::string& program) {
-  if (program.size() <= kProgramBytes) return program;
-  const std::size_t end = program.rfind('\n', kProgramBytes);
-  return program.substr(0, end == std::string::npos ? kProgramBytes : end + 1);
-}
+// --- figures
 
 json tool_json(const model::BallTool& tool) {
   json holder = json::array();
@@ -249,39 +180,29 @@ json page_json(const RotaryPicture& picture) {
   const char* pattern = picture.options->pattern == rotary::Pattern::rings    ? "rings"
                         : picture.options->pattern == rotary::Pattern::spiral ? "spiral"
                                                                               : "lines";
-  json data = {{"title", picture.title},
-               {"command", picture.command_line},
-               {"pattern", pattern},
-               {"method", picture.options->tai == rotary::Tai::exact ? "exact" : "section"},
-               {"clearance", geom::degrees(picture.options->clearance)},
-               {"smooth", picture.options->smooth},
-               {"tool", tool_json(*picture.tool)},
-               {"x", {picture.part->x_min, picture.part->x_max}},
-               {"counts", counts_json(*picture.plan)},
-               {"shape", shape_json(*picture.part)},
-               {"sections", sections_json(picture)},
-               {"poses", poses_json(*picture.plan, kept.number)},
-               {"points", points_json(picture, kept)},
-               {"places", places_json(*picture.plan, kept, places)},
-               {"warnings", warnings_json(picture.diagnostics)}};
+  json data = {
+      {"pattern", pattern},
+      {"method", picture.options->tai == rotary::Tai::exact ? "exact" : "section"},
+      {"clearance", geom::degrees(picture.options->clearance)},
+      {"smooth", picture.options->smooth},
+      {"tool", tool_json(*picture.tool)},
+      {"x", {picture.part->x_min, picture.part->x_max}},
+      {"counts", counts_json(*picture.plan)},
+      {"shape", shape_json(drawn_shape(*picture.part, kTriangles), picture.part->mesh.triangles.size())},
+      {"sections", sections_json(picture)},
+      {"poses", poses_json(*picture.plan, kept.number)},
+      {"points", points_json(picture, kept)},
+      {"places", places_json(*picture.plan, kept, places)}};
   data["placeCount"] = places;
-  data["warningCount"] = picture.diagnostics ? picture.diagnostics->warnings().size() : 0;
-  data["figures"] = json::array();
-  for (const RotaryPicture::Figure& f : picture.figures)
-    data["figures"].push_back({f.group, f.name, f.value});
-  data["nc"] = shortened(picture.nc_text);
-  data["ncLines"] = std::count(picture.nc_text.begin(), picture.nc_text.end(), '\n');
+  data["figures"] = figures_json(picture.figures);
+  put_texts(data, picture.title, picture.command_line, picture.diagnostics, picture.nc_text);
   return data;
 }
 
 }  // namespace
 
 std::string rotary_html(const RotaryPicture& picture) {
-  // Text from files may hold damaged UTF-8: replaced rather than thrown at.
-  const std::string data =
-      script_safe(page_json(picture).dump(-1, ' ', false, json::error_handler_t::replace));
-  const std::string title = html_text(picture.title);
-  return fill_template(embedded::rotary_pages().front().text, {{"@TITLE@", title}, {"@DATA@", data}});
+  return make_page("rotary.html", picture.title, page_json(picture));
 }
 
 }  // namespace burin::view

@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
-#include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <vector>
 
+#include "burin/view/page_test_support.h"
 #include "burin/view/rotary_places.h"
 #include "burin/view/rotary_shape.h"
 
@@ -21,29 +20,9 @@ using geom::Point3;
 using rotary::RotaryPoint;
 using rotary::State;
 
-std::string decode64(const std::string& text) {
-  static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  std::uint32_t bits = 0;
-  int have = 0;
-  for (const char c : text) {
-    const std::size_t digit = kDigits.find(c);
-    if (digit == std::string::npos) break;
-    bits = (bits << 6) | static_cast<std::uint32_t>(digit);
-    have += 6;
-    if (have >= 8) {
-      have -= 8;
-      out += static_cast<char>((bits >> have) & 0xffu);
-    }
-  }
-  return out;
-}
-
-nlohmann::json data_of(const std::string& page) {
-  const std::string open = "<script type=\"application/json\" id=\"data\">";
-  const std::size_t from = page.find(open) + open.size();
-  return nlohmann::json::parse(page.substr(from, page.find("</script>", from) - from));
-}
+using test::data_of;
+using test::decode64;
+using test::expect_closed_page;
 
 constexpr double kRadius = 10, kBall = 2, kLength = 20;
 
@@ -123,14 +102,8 @@ struct Sample {
 TEST(RotaryHtml, IsOnePageWhoseDataParsesAndCannotEscape) {
   const Sample sample;
   const std::string page = rotary_html(sample.picture());
-  for (const char* outside : {"src=", "http://", "https://", "@import", "url("})
-    EXPECT_EQ(page.find(outside), std::string::npos) << outside;
-  for (const auto& [tag, wanted] :
-       {std::pair{"<script", 2u}, {"</script", 2u}, {"<title", 1u}, {"@DATA@", 2u}}) {
-    std::size_t n = 0;
-    for (std::size_t at = page.find(tag); at != std::string::npos; at = page.find(tag, at + 1)) ++n;
-    EXPECT_EQ(n, wanted) << tag;
-  }
+  expect_closed_page(page);
+  test::expect_balanced(page);
   EXPECT_NE(page.find("<title>sample &lt;&amp;&gt; &quot;@DATA@&quot;"), std::string::npos);
   const auto data = data_of(page);
   EXPECT_EQ(data["title"].get<std::string>().substr(0, 19), "sample <&> \"@DATA@\"");
@@ -145,14 +118,9 @@ TEST(RotaryHtml, PointsAndPosesComeBack) {
   const auto& points = data["points"];
   const std::size_t n = points["n"];
   ASSERT_EQ(n, sample.plan.points.size());
-  const auto floats = [](const nlohmann::json& text) {
-    const std::string raw = decode64(text.get<std::string>());
-    std::vector<float> v(raw.size() / 4);
-    std::memcpy(v.data(), raw.data(), 4 * v.size());
-    return v;
-  };
-  const std::vector<float> contact = floats(points["contact"]), theta = floats(points["theta"]),
-                           reach = floats(points["reach"]);
+  const std::vector<float> contact = test::numbers<float>(points["contact"]),
+                           theta = test::numbers<float>(points["theta"]),
+                           reach = test::numbers<float>(points["reach"]);
   const std::string flags = decode64(points["flags"].get<std::string>()),
                     counts = decode64(points["reachCount"].get<std::string>());
   std::size_t at = 0;

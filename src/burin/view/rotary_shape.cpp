@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
 #include <utility>
 
 #include "burin/geom/mesh/slice.h"
@@ -121,69 +120,6 @@ void add_caps(const rotary::Part& part, std::size_t max_triangles, Shape& shape)
   }
 }
 
-/// Vertices put together by cells of a grid: each cell is drawn at the vertex with the sharpest edge in it.
-class Clusters {
- public:
-  Clusters(const rotary::Part& part, double cell) : part_(part), cell_(cell) {
-    const std::size_t n = part.mesh.vertices.size();
-    std::vector<Vec3> sum(n);
-    std::vector<double> weight(n, 0);
-    for (const auto& t : part.mesh.triangles) {
-      const Vec3 area = normal_of(part.mesh, t);
-      for (const std::uint32_t v : t) sum[v] = sum[v] + area, weight[v] += norm(area);
-    }
-    cell_of_.resize(n);
-    std::unordered_map<std::uint64_t, std::uint32_t> seen;  // only looked up, never walked
-    std::vector<double> sharpest;
-    for (std::size_t v = 0; v < n; ++v) {
-      const auto [at, fresh] =
-          seen.try_emplace(key(part.mesh.vertices[v]), static_cast<std::uint32_t>(drawn_.size()));
-      const double sharp = weight[v] > 0 ? 1 - norm(sum[v]) / weight[v] : 0;
-      if (fresh) drawn_.push_back(static_cast<std::uint32_t>(v)), sharpest.push_back(sharp);
-      if (sharp > sharpest[at->second] + 1e-6)
-        sharpest[at->second] = sharp, drawn_[at->second] = static_cast<std::uint32_t>(v);
-      cell_of_[v] = at->second;
-    }
-  }
-  bool whole(const std::array<std::uint32_t, 3>& t) const {
-    const std::uint32_t a = cell_of_[t[0]], b = cell_of_[t[1]], c = cell_of_[t[2]];
-    return a != b && b != c && c != a;
-  }
-  Point3 at(std::uint32_t vertex) const { return part_.mesh.vertices[drawn_[cell_of_[vertex]]]; }
-
- private:
-  std::uint64_t key(Point3 p) const {
-    const auto part = [this](double v) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / cell_)) + (1 << 20)) &
-             0x1fffffu;
-    };
-    return part(p.x) << 42 | part(p.y) << 21 | part(p.z);
-  }
-  const rotary::Part& part_;
-  double cell_;
-  std::vector<std::uint32_t> cell_of_, drawn_;
-};
-
-bool add_clustered(const rotary::Part& part, double cell, std::size_t max_triangles, Shape& shape) {
-  const Clusters clusters(part, cell);
-  Shape drawn;
-  for (std::size_t i = 0; i < part.mesh.triangles.size(); ++i) {
-    const auto& t = part.mesh.triangles[i];
-    if (!clusters.whole(t)) continue;
-    if (drawn.points.size() / 3 >= max_triangles) return false;
-    const Point3 a = clusters.at(t[0]), b = clusters.at(t[1]), c = clusters.at(t[2]);
-    const Vec3 flat = unit(cross(b - a, c - a));
-    for (std::size_t k = 0; k < 3; ++k) {
-      drawn.points.push_back(clusters.at(t[k]));
-      // A triangle that was pulled far from where it lay is drawn flat.
-      const Vec3 n = i < part.corner_normals.size() ? part.corner_normals[i][k] : flat;
-      drawn.normals.push_back(dot(n, flat) > 0.5 ? n : flat);
-    }
-  }
-  shape = std::move(drawn);
-  return true;
-}
-
 // --- outlines
 
 double distance2(Point2 p, Point2 a, Point2 b) {
@@ -228,16 +164,18 @@ Shape drawn_shape(const rotary::Part& part, std::size_t max_triangles) {
     add_caps(part, max_triangles, shape);
     return shape;
   }
-  if (part.mesh.triangles.size() <= max_triangles) {
-    for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t) add_triangle(part, t, shape);
-    return shape;
+  const ReducedMesh drawn = reduced(part.mesh, 0, part.mesh.triangles.size(), max_triangles);
+  for (std::size_t i = 0; i < drawn.source.size(); ++i) {
+    const auto& t = drawn.mesh.triangles[i];
+    const Vec3 flat = unit(normal_of(drawn.mesh, t));
+    const bool known = drawn.source[i] < part.corner_normals.size();
+    for (std::size_t k = 0; k < 3; ++k) {
+      shape.points.push_back(drawn.mesh.vertices[t[k]]);
+      // A triangle that was pulled far from where it lay is drawn flat.
+      const Vec3 n = known ? part.corner_normals[drawn.source[i]][k] : flat;
+      shape.normals.push_back(dot(n, flat) > 0.5 ? n : flat);
+    }
   }
-  double area = 0;
-  for (const auto& t : part.mesh.triangles) area += norm(normal_of(part.mesh, t)) / 2;
-  const double wanted = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, max_triangles)));
-  const double least = std::max(part.radius_max, part.x_max - part.x_min) / (1 << 18);
-  double cell = std::max(wanted, least);
-  while (!add_clustered(part, cell, max_triangles, shape)) cell *= 1.25;
   return shape;
 }
 

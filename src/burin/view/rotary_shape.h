@@ -7,14 +7,9 @@
 
 #include "burin/geom/vec.h"
 #include "burin/plan/rotary/part.h"
+#include "burin/view/mesh_shape.h"
 
 namespace burin::view {
-
-/// Triangles, three corners each. Only for looking at.
-struct Shape {
-  std::vector<geom::Point3> points;
-  std::vector<geom::Vec3> normals;
-};
 
 /// At most `max_triangles`. A swept part is a grid of its own section; of others the mesh, with vertices that
 /// are near each other put together when there are too many triangles (edges keep their own vertices).

@@ -144,11 +144,11 @@ std::string check(const Region& region, double d, const Region& result, Random& 
   return "";
 }
 
-/// Cases per family: 5000 unless BURIN_CASES says otherwise (sanitizer and debug runs use fewer).
+/// Cases per family: 2500 unless BURIN_CASES says otherwise (sanitizer and debug runs use fewer).
 int case_count() {
   if (const char* text = std::getenv("BURIN_CASES")) return std::max(1, std::atoi(text));
 #ifdef NDEBUG
-  return 5000;
+  return 2500;
 #else
   return 200;
 #endif

@@ -2,6 +2,8 @@
 // Surfaces through grids of points. Piegl & Tiller, The NURBS Book, 9.2. mm.
 #pragma once
 
+#include <vector>
+
 #include "burin/base/result.h"
 #include "burin/geom/surface/nurbs.h"
 
@@ -18,5 +20,10 @@ struct PointGrid {
 /// than 2 x 2 points, points that are not finite, a row or column without length (a single row or column at
 /// one end may collapse to a point).
 Result<NurbsSurface> interpolate(const PointGrid& grid);
+
+/// The same at given parameters, strictly ascending, one for each column (u) and row (v): surfaces that share
+/// a row of points and its parameters share the whole edge. Error (geometry) also for other parameters.
+Result<NurbsSurface> interpolate(const PointGrid& grid, const std::vector<double>& u,
+                                 const std::vector<double>& v);
 
 }  // namespace burin::geom

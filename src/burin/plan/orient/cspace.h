@@ -46,12 +46,16 @@ class Goal {
  public:
   virtual ~Goal() = default;
   virtual double value(const CcPoint& at, const Angles& angles) const = 0;
+  /// The greatest tilt in [lo, hi] at which the goal is at least `value` (about: within 1e-6 rad, not below);
+  /// lo when there is none. By bisection where there is no formula.
+  virtual double tilt_of(const CcPoint& at, double value, double beta, double lo, double hi) const;
 };
 /// effective_radius
 class RadiusGoal final : public Goal {
  public:
   explicit RadiusGoal(const model::Mill& mill) : mill_(&mill) {}
   double value(const CcPoint& at, const Angles& angles) const override;
+  double tilt_of(const CcPoint& at, double value, double beta, double lo, double hi) const override;
 
  private:
   const model::Mill* mill_;

@@ -58,12 +58,15 @@ struct OrientedPath {
   double smooth_loss = 0, speed_share = 0, acceleration_share = 0;
 };
 
-/// Another way to mill the same faces at the same scallop.
+/// Another way to mill the same faces at the same scallop: one tilt for all at yaw 0 ("sturz"; the least tilt
+/// that suits every point, else the one that suits most), or a ball-end mill of the same radius ("ball"; a
+/// smaller one where the faces are bent more). Side steps follow the strips as in the plan.
 struct Comparison {
-  std::string name;  ///< "sturz", "ball"
-  bool possible = false;
-  double tilt = 0;  ///< sturz
+  std::string name;
+  bool possible = false;  ///< false: contacts came from a file, there is nothing to lay out
+  double tilt = 0;        ///< sturz
   double radius_mm = 0;
+  std::size_t unreachable = 0;  ///< sturz: contact points that the tilt does not suit
   std::size_t paths = 0;
   double cut_mm = 0;
   double minutes = 0;  ///< at the feed
@@ -73,21 +76,23 @@ struct OrientPlan {
   std::vector<OrientedPath> paths;
   std::size_t contact_points = 0, unreachable = 0;
   std::uint64_t tests = 0;
-  double gain_mean = 0;               ///< mean of rho / rho_initial - 1 over points that have both
+  double gain_mean = 0;  ///< mean of rho / rho_initial - 1 over points that have both (initial above 0)
   std::vector<double> gain_per_path;  ///< the same, a path
   double axis_step_max = 0;           ///< between neighbours of a path
   double cut_mm = 0;
   std::vector<Comparison> comparisons;
 };
 
-/// Scene, contact points, angles. One path is one task of `workers`; the result does not depend on how many
-/// there are. `contacts` in place of generated paths when not empty. machine nullptr: no limits.
-Result<OrientPlan> plan(const Part& part, const model::Mill& mill, const std::vector<CcPath>& contacts,
-                        const kinematics::Kinematics* machine, const OrientOptions& options, Workers& workers,
-                        Diagnostics& diagnostics, ProgressSink* progress);
+/// Contact points and their angles. `scene` holds the part's mesh and the mill. One path is one task of
+/// `workers`; the result does not depend on how many there are. `contacts` in place of generated paths when
+/// not empty. `machine`, whose limits `limits` are, tells `smooth` how the axes turn; nullptr: none. Errors:
+/// options out of range (range), a search that does not fit the objective, no faces and no contacts (usage),
+/// too many paths or points (range), those of PathFamily::make.
+Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimits& limits,
+                        const std::vector<CcPath>& contacts, const kinematics::Kinematics* machine,
+                        const OrientOptions& options, Workers& workers, Diagnostics& diagnostics,
+                        ProgressSink* progress);
 
-/// The contact points alone, as plan() takes them when every path has `path_count` or `side_step_mm`, else
-/// with its angles found: for `burin cspace`.
 Setting setting_of(const Scene& scene, const MachineLimits& limits, const OrientOptions& options);
 
 }  // namespace burin::orient

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -29,7 +30,7 @@ struct PathOptions {
   /// max_turn between two.
   double chord_mm = 0.01;
   double max_turn = 5 * geom::kPi / 180;
-  double max_step_mm = 0;  ///< 0: none
+  double max_step_mm = 0;  ///< 0: a 64th of the face's size
   double edge_mm = 0;      ///< paths and their ends keep this from the face's border
 };
 
@@ -49,8 +50,18 @@ class PathFamily {
   /// How far the neighbour at w_to lies from a contact of the path at w, measured along t on the surface;
   /// infinite where there is none abreast.
   double distance(const CcPoint& from, double w, double w_to) const;
-  /// Largest distance between the paths at the two ends of the family over all stations: a length of the
-  /// whole.
+  /// The same for the contacts of one path in their order, with the place met. (What lay_paths measures by.)
+  struct Abreast {
+    bool found = false;
+    geom::Point3 place;   ///< on the path at w_to
+    double distance = 0;  ///< along t, on the surface
+    bool left = false;    ///< towards +t
+    /// Not found because the trims' border lies between: its distance; else infinite.
+    double border = std::numeric_limits<double>::infinity();
+  };
+  std::vector<Abreast> abreast(const std::vector<CcPoint>& from, double w, double w_to) const;
+  /// A length of the whole: the largest distance to the neighbour at each w, added up. Equal steps of w are
+  /// equal shares of it, so extent() / count is the largest distance between `count` + 1 even places.
   double extent() const;
 
  private:

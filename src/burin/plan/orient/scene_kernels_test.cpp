@@ -58,7 +58,10 @@ Asked asked(Random& r, int n) {
       };
       t.push_back({corner(), corner(), corner()});
     }
-    put_box(fit_box(t.size(), [&](std::size_t i) { return t[i]; }), origin, lane, a.node);
+    Mesh mesh;
+    for (const auto& c : t) add(mesh, c[0], c[1], c[2]);
+    const std::vector<std::uint32_t> all{0, 1, 2, 3};
+    put_box(fit_box(mesh, all, all.size()), origin, lane, a.node);
   }
   return a;
 }

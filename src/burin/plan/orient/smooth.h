@@ -13,7 +13,10 @@ namespace burin::orient {
 
 struct SmoothOptions {
   double feed_mm_min = 1000;
-  /// mm of the goal that a radian of turning the axis may cost.
+  /// What is weighed against each other, all in mm of path at the feed: the share of the goal that is lost,
+  /// times the way of the contact; the way by which the tip goes farther than the contact; the time that
+  /// rotary axes need beyond the tip's (as long as there is a choice, none); and this for a radian of
+  /// turning.
   double turn_weight = 1;
   const kinematics::Kinematics* machine = nullptr;  ///< nullptr: turning of the tool axis itself counts
 };

@@ -11,14 +11,18 @@ struct AirOptions {
   double safety_mm = 20;
   double feed_mm_min = 1000;
   double spindle_rpm = 0;
-  double air_mm_min = 0;  ///< feed of ways through the air beside the part; 0: rapids
+  /// Feed of ways through the air; 0: rapids where the axis rests, five times the feed where it turns (what
+  /// a rapid does with turning axes is the control's own affair).
+  double air_mm_min = 0;
 };
 struct ToolPath {
   cl::Program program;  ///< record sources: index of the point over all paths, kNoSource for ways between
   double cut_mm = 0, link_mm = 0, rapid_mm = 0;
   std::size_t links = 0;
+  std::size_t inserted = 0;  ///< points between contact points
   std::vector<std::size_t>
       broken;  ///< feed moves between neighbours that would gouge or collide: retracted instead
+  std::vector<std::size_t> stranded;  ///< points of runs that no clear way leads to or from: left out
 };
 
 /// Unreachable points end a run. Between two neighbours the tool moves as tool-centre-point control moves it

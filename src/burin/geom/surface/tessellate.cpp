@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "burin/geom/surface/tessellate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <unordered_map>
+
+#include "burin/geom/point_tools.h"
+#include "burin/geom/surface/evaluate.h"
+#include "burin/geom/surface/trim_cells.h"
+
+namespace burin::geom {
+namespace {
+
+/// Corners at one place (poles) make no triangle.
+void add_triangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, bool reversed) {
+  const auto& p = mesh.vertices;
+  if (p[a] == p[b] || p[b] == p[c] || p[c] == p[a]) return;
+  if (reversed) std::swap(b, c);
+  mesh.triangles.push_back({a, b, c});
+}
+
+/// Counter-clockwise corners; cut at the shorter diagonal.
+void add_cell(Mesh& mesh, const std::array<std::uint32_t, 4>& c, bool reversed) {
+  const auto& p = mesh.vertices;
+  const std::size_t k = distance(p[c[0]], p[c[2]]) <= distance(p[c[1]], p[c[3]]) ? 0 : 1;
+  add_triangle(mesh, c[k], c[k + 1], c[k + 2], reversed);
+  add_triangle(mesh, c[k], c[k + 2], c[(k + 3) % 4], reversed);
+}
+
+Mesh whole(const NurbsSurface& surface, const GridLines& lines, bool reversed) {
+  Mesh mesh;
+  SurfaceEvaluator evaluator(surface);
+  const std::size_t columns = lines.u.size(), rows = lines.v.size();
+  mesh.vertices.resize(columns * rows);
+  for (std::size_t j = 0; j < rows; ++j)
+    evaluator.iso_points(Direction::u, lines.v[j], lines.u,
+                         std::span(mesh.vertices).subspan(j * columns, columns));
+  mesh.triangles.reserve(2 * (columns - 1) * (rows - 1));
+  for (std::size_t j = 0; j + 1 < rows; ++j) {
+    for (std::size_t i = 0; i + 1 < columns; ++i) {
+      const auto a = static_cast<std::uint32_t>(i + j * columns);
+      const auto d = static_cast<std::uint32_t>(a + columns);
+      add_cell(mesh, {a, a + 1, d + 1, d}, reversed);
+    }
+  }
+  return mesh;
+}
+
+/// Cells and triangles in the parameter plane first, then all points at once.
+class Trimmed {
+ public:
+  Trimmed(const NurbsSurface& surface, const GridLines& lines, const detail::TrimCells& cells)
+      : surface_(surface), lines_(lines), cells_(cells) {}
+
+  Mesh build(bool reversed) {
+    const auto& pieces = cells_.pieces();
+    auto piece = pieces.begin();
+    for (std::size_t j = 0; j < cells_.rows(); ++j) {
+      const std::vector<char> inside = cells_.inside(j);
+      for (std::size_t i = 0; i < cells_.columns(); ++i) {
+        const std::uint64_t number = i + j * cells_.columns();
+        const auto first = piece;
+        while (piece != pieces.end() && piece->cell == number) ++piece;
+        if (first != piece) {
+          cut_cell(i, j, {first, piece}, inside[i] != 0);
+        } else if (inside[i]) {
+          quads_.push_back(corners(i, j));
+        }
+      }
+    }
+    Mesh mesh;
+    mesh.vertices.resize(places_.size());
+    SurfaceEvaluator(surface_).points(places_, mesh.vertices);
+    for (const auto& q : quads_) add_cell(mesh, q, reversed);
+    for (const auto& t : triangles_) add_triangle(mesh, t[0], t[1], t[2], reversed);
+    return mesh;
+  }
+
+ private:
+  struct Hash {
+    std::size_t operator()(const detail::LatticePoint& p) const {
+      return static_cast<std::size_t>(p.x) * 0x9e3779b97f4a7c15ULL ^ static_cast<std::size_t>(p.y);
+    }
+  };
+
+  std::uint32_t vertex(detail::LatticePoint p) {
+    const auto [at, fresh] = index_.try_emplace(p, static_cast<std::uint32_t>(places_.size()));
+    if (fresh) places_.push_back(cells_.place(p));
+    return at->second;
+  }
+
+  static std::array<detail::LatticePoint, 4> lattice_corners(std::size_t i, std::size_t j) {
+    const std::int64_t x = static_cast<std::int64_t>(i) * detail::kCell,
+                       y = static_cast<std::int64_t>(j) * detail::kCell, n = detail::kCell;
+    return {{{x, y}, {x + n, y}, {x + n, y + n}, {x, y + n}}};
+  }
+
+  std::array<std::uint32_t, 4> corners(std::size_t i, std::size_t j) {
+    const auto c = lattice_corners(i, j);
+    return {vertex(c[0]), vertex(c[1]), vertex(c[2]), vertex(c[3])};
+  }
+
+  /// Of the cell's real sides.
+  double width_share(std::size_t i, std::size_t j) {
+    const double u = 0.5 * (lines_.u[i] + lines_.u[i + 1]), v = 0.5 * (lines_.v[j] + lines_.v[j + 1]);
+    const auto d = derivatives(surface_, u, v);
+    const double width = norm(d.du) * (lines_.u[i + 1] - lines_.u[i]);
+    const double height = norm(d.dv) * (lines_.v[j + 1] - lines_.v[j]);
+    constexpr double kMost = 1e3;  // beyond, shapes are lost anyway
+    return width > 0 && height > 0 ? std::clamp(width / height, 1 / kMost, kMost) : 1;
+  }
+
+  void cut_cell(std::size_t i, std::size_t j, std::span<const detail::TrimPiece> pieces, bool left_inside) {
+    const auto c = lattice_corners(i, j);
+    std::vector<detail::CellPoint> points;
+    std::vector<detail::CellSegment> segments;
+    std::map<std::pair<std::int64_t, std::int64_t>, std::uint32_t> known;
+    const auto point = [&](detail::LatticePoint p) {
+      const detail::CellPoint local{p.x - c[0].x, p.y - c[0].y};
+      const auto [at, fresh] =
+          known.try_emplace({local.x, local.y}, static_cast<std::uint32_t>(points.size()));
+      if (fresh) points.push_back(local);
+      return at->second;
+    };
+    for (const auto& corner : c) point(corner);
+    for (const auto& piece : pieces) {
+      const std::uint32_t from = point(piece.from), to = point(piece.to);
+      if (from != to) segments.push_back({from, to});
+    }
+    const auto cut = detail::triangulate_cell(std::move(points), segments, left_inside, width_share(i, j));
+    for (const auto& t : cut.inside) {
+      std::array<std::uint32_t, 3> out{};
+      for (std::size_t k = 0; k < 3; ++k)
+        out[k] = vertex({cut.points[t[k]].x + c[0].x, cut.points[t[k]].y + c[0].y});
+      triangles_.push_back(out);
+    }
+  }
+
+  const NurbsSurface& surface_;
+  const GridLines& lines_;
+  const detail::TrimCells& cells_;
+  std::unordered_map<detail::LatticePoint, std::uint32_t, Hash> index_;  ///< asked, never run through
+  std::vector<Point2> places_;
+  std::vector<std::array<std::uint32_t, 4>> quads_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+};
+
+Error too_long(std::size_t most) {
+  return {ErrorCode::range,
+          "the trims of a face are too long for its triangles (at most " + std::to_string(most) + " pieces)",
+          {}};
+}
+
+}  // namespace
+
+Result<Tessellation> tessellate(const NurbsSurface& surface, bool reversed,
+                                const std::vector<std::vector<Point2>>& trims,
+                                const TessellateOptions& options) {
+  for (const auto& loop : trims)
+    for (const Point2 p : loop)
+      if (!is_finite(p)) return Error{ErrorCode::geometry, "a trim has a place that is not finite", {}};
+  auto lines = grid_lines(surface, options);
+  if (!lines) return lines.error();
+  if (trims.empty()) return Tessellation{whole(surface, *lines, reversed), lines->deflection_mm};
+
+  // Fewer cells when the trims fall into too many pieces, as long as that makes fewer cells.
+  TessellateOptions coarser = options;
+  for (;;) {
+    const auto cells = detail::TrimCells::make(*lines, trims, options.max_triangles);
+    if (cells) return Tessellation{Trimmed(surface, *lines, *cells).build(reversed), lines->deflection_mm};
+    const std::size_t before = (lines->u.size() - 1) * (lines->v.size() - 1);
+    coarser.max_triangles = before;  // half as many cells
+    lines = grid_lines(surface, coarser);
+    if (!lines || (lines->u.size() - 1) * (lines->v.size() - 1) >= before)
+      return too_long(options.max_triangles);
+  }
+}
+
+}  // namespace burin::geom

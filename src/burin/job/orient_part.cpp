@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The part of an orient job: faces or triangles of the design, and triangles of everything around.
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "burin/base/text.h"
+#include "burin/geom/surface/tessellate.h"
+#include "burin/io/step/read_step.h"
+#include "burin/io/stl/stl.h"
+#include "burin/job/orient_job.h"
+
+namespace burin::job {
+namespace {
+
+using geom::Mesh;
+
+/// Shares of the gouge tolerance that triangles may leave their faces by.
+constexpr double kDesignShare = 1.0 / 40, kObstacleShare = 1.0 / 4;
+/// The tool is tested against all triangles: more of them make the plan slow before they make it better.
+constexpr std::size_t kMostDesign = 1'000'000, kMostObstacles = 500'000;
+/// Faces of free form are approximated within this at most when they are no NURBS (mm).
+constexpr double kApproximation = 1e-4;
+/// How much farther apart the triangles are than the count asks for when there were too many.
+constexpr double kMargin = 1.02;
+constexpr std::size_t kMostFileTriangles = 20'000'000;
+
+void append(Mesh& to, const Mesh& mesh) {
+  const auto base = static_cast<std::uint32_t>(to.vertices.size());
+  to.vertices.insert(to.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+  for (const auto& t : mesh.triangles) to.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+}
+
+Error in_file(Error error, const std::string& file) {
+  if (error.where.file.empty()) error.where.file = file;
+  return error;
+}
+
+std::string face_text(int number) {
+  return "face " + std::to_string(number);
+}
+
+/// The finest deflection from `wanted` on at which all faces together stay within `most` triangles.
+Result<double> affordable(const std::vector<orient::DesignFace>& faces, double wanted, std::size_t most) {
+  for (double deflection = wanted;;) {
+    double total = 0, reached = deflection;
+    for (const orient::DesignFace& face : faces) {
+      const auto lines = geom::grid_lines(face.surface, {deflection, 0, most});
+      if (!lines) {
+        Error error = lines.error();
+        error.where.entity = face_text(face.number);
+        return error;
+      }
+      total += 2 * double(lines->u.size() - 1) * double(lines->v.size() - 1);
+      reached = std::max(reached, lines->deflection_mm);
+    }
+    const double over = total / double(most);
+    if (over <= 1 && reached <= deflection) return deflection;
+    deflection = std::max(reached, deflection * std::max(1.0, kMargin * over));
+    if (!std::isfinite(deflection))
+      return Error{ErrorCode::range, "the faces cannot be cut in triangles", {}};
+  }
+}
+
+/// Triangles of all faces behind those in `mesh`; returns the deflection.
+Result<double> add_faces(const std::vector<orient::DesignFace>& faces, double wanted, std::size_t most,
+                         Mesh& mesh) {
+  if (faces.empty()) return 0.0;
+  const auto deflection = affordable(faces, wanted, most);
+  if (!deflection) return deflection.error();
+  double reached = 0;
+  for (const orient::DesignFace& face : faces) {
+    auto part = geom::tessellate(face.surface, face.reversed, face.trims, {*deflection, 0, most});
+    if (!part) {
+      Error error = part.error();
+      error.where.entity = face_text(face.number);
+      return error;
+    }
+    append(mesh, part->mesh);
+    reached = std::max(reached, part->deflection_mm);
+  }
+  return reached;
+}
+
+class Loader {
+ public:
+  Loader(const OrientJobFile& job, std::string folder, const FileSource& read, Diagnostics& diagnostics)
+      : job_(job), folder_(std::move(folder)), read_(read), diagnostics_(diagnostics) {}
+
+  Result<orient::Part> load() {
+    if (auto ok = std::visit([this](const auto& part) { return add(part); }, job_.part); !ok)
+      return ok.error();
+    part_.design_triangles = part_.mesh.triangles.size();
+    if (part_.design_triangles == 0)
+      return Error{ErrorCode::geometry, "the design surface has no triangles (faces with an area)", {}};
+    append(part_.mesh, around_);
+    for (const std::string& file : job_.obstacles)
+      if (auto ok = add_obstacle(file); !ok) return in_file(ok.error(), file);
+    for (const auto& t : part_.mesh.triangles)
+      for (const std::uint32_t i : t) part_.bounds.add(part_.mesh.vertices[i]);
+    return std::move(part_);
+  }
+
+ private:
+  double design_share() const { return kDesignShare * job_.options.tolerance_mm; }
+  double obstacle_share() const { return kObstacleShare * job_.options.tolerance_mm; }
+
+  Result<std::string> bytes(const std::string& file) const {
+    return read_((std::filesystem::path(folder_) / file).string());
+  }
+
+  void tell(double reached, double wanted, const std::string& what, const std::string& file) {
+    // The proven deflection of what was not coarsened is below what was asked for.
+    if (reached <= wanted) return;
+    diagnostics_.info("coarser_triangles",
+                      "the triangles of " + what + " leave it by up to " + format_fixed(reached, 5) +
+                          " mm instead of " + format_fixed(wanted, 5) + ": there would be too many",
+                      {.file = file});
+  }
+
+  Result<std::vector<orient::DesignFace>> cad_faces(const std::string& file) {
+    const auto text = bytes(file);
+    if (!text) return text.error();
+    io::ReadCadOptions options;
+    options.file_name = file;
+    options.trim_tolerance_mm = design_share();
+    options.approximation_mm = std::min(kApproximation, design_share());
+    auto model = io::read_cad(*text, options, diagnostics_);
+    if (!model) return in_file(model.error(), file);
+    std::vector<orient::DesignFace> faces;
+    for (io::CadFace& face : model->faces) {
+      orient::DesignFace out{std::move(face.surface), face.reversed, {}, face.number};
+      for (io::TrimLoop& loop : face.loops) out.trims.push_back(std::move(loop.points));
+      faces.push_back(std::move(out));
+    }
+    return faces;
+  }
+
+  Result<void> add(const OrientSurface& surface) {
+    auto faces = cad_faces(surface.file);
+    if (!faces) return faces.error();
+    std::vector<orient::DesignFace> others;
+    for (const int wanted : surface.faces) {
+      const bool there =
+          std::any_of(faces->begin(), faces->end(), [wanted](const auto& f) { return f.number == wanted; });
+      if (!there)
+        return Error{ErrorCode::usage,
+                     "there is no face " + std::to_string(wanted) + " (1 to " +
+                         std::to_string(faces->empty() ? 0 : faces->back().number) + ")",
+                     {.file = surface.file}};
+    }
+    for (orient::DesignFace& face : *faces) {
+      const auto& list = surface.faces;
+      const bool design = list.empty() || std::find(list.begin(), list.end(), face.number) != list.end();
+      if (design) face.reversed = face.reversed != surface.flip;
+      (design ? part_.faces : others).push_back(std::move(face));
+    }
+    part_.name = std::filesystem::path(surface.file).filename().string();
+    const auto reached = add_faces(part_.faces, design_share(), kMostDesign, part_.mesh);
+    if (!reached) return in_file(reached.error(), surface.file);
+    part_.deflection_mm = *reached;
+    tell(*reached, design_share(), "the design", surface.file);
+    return add_around(others, surface.file);
+  }
+
+  Result<void> add_around(const std::vector<orient::DesignFace>& faces, const std::string& file) {
+    const auto reached = add_faces(faces, obstacle_share(), kMostObstacles, around_);
+    if (!reached) return in_file(reached.error(), file);
+    tell(*reached, obstacle_share(), "what is not milled", file);
+    return {};
+  }
+
+  Result<Mesh> stl(const std::string& file) {
+    const auto text = bytes(file);
+    if (!text) return text.error();
+    io::ReadStlOptions options;
+    options.file_name = file;
+    options.max_triangles = kMostFileTriangles;
+    auto mesh = io::read_stl(*text, options, diagnostics_);
+    if (!mesh) return in_file(mesh.error(), file);
+    return mesh;
+  }
+
+  Result<void> add(const OrientMesh& design) {
+    auto mesh = stl(design.file);
+    if (!mesh) return mesh.error();
+    if (design.flip)
+      for (auto& t : mesh->triangles) std::swap(t[1], t[2]);
+    part_.mesh = *std::move(mesh);
+    part_.name = std::filesystem::path(design.file).filename().string();
+    return {};
+  }
+
+  Result<void> add(const model::PropellerData& data) {
+    auto propeller = model::make_propeller(data);
+    if (!propeller) return propeller.error();
+    part_.name = "propeller";
+    part_.faces.push_back({propeller->side, propeller->reversed, {}, 1});
+    const auto reached = add_faces(part_.faces, design_share(), kMostDesign, part_.mesh);
+    if (!reached) return reached.error();
+    part_.deflection_mm = *reached;
+    tell(*reached, design_share(), "the design", "");
+    for (double deflection = obstacle_share();; deflection *= 2) {
+      around_ = model::blade_back(data, *propeller, deflection);
+      append(around_, model::neighbour_blades(data, *propeller, deflection));
+      append(around_, model::hub_mesh(data, *propeller, deflection));
+      if (around_.triangles.size() > kMostObstacles) continue;
+      tell(deflection, obstacle_share(), "what is not milled", "");
+      return {};
+    }
+  }
+
+  Result<void> add_obstacle(const std::string& file) {
+    const std::string extension = to_lower(std::filesystem::path(file).extension().string());
+    if (extension == ".stl") {
+      const auto mesh = stl(file);
+      if (!mesh) return mesh.error();
+      append(part_.mesh, *mesh);
+      return {};
+    }
+    const auto faces = cad_faces(file);
+    if (!faces) return faces.error();
+    const auto reached = add_faces(*faces, obstacle_share(), kMostObstacles, part_.mesh);
+    if (!reached) return reached.error();
+    tell(*reached, obstacle_share(), "what is not milled", file);
+    return {};
+  }
+
+  const OrientJobFile& job_;
+  std::string folder_;
+  const FileSource& read_;
+  Diagnostics& diagnostics_;
+  orient::Part part_;
+  Mesh around_;
+};
+
+}  // namespace
+
+Result<orient::Part> load_orient_part(const OrientJobFile& job, const std::string& folder,
+                                      const FileSource& read, Diagnostics& diagnostics) {
+  if (!(job.options.tolerance_mm > 0))
+    return Error{ErrorCode::range, "the tolerance is not positive (mm above 0)", {}};
+  try {
+    return Loader(job, folder, read, diagnostics).load();
+  } catch (const std::exception& problem) {
+    return Error{ErrorCode::internal, std::string("the part could not be loaded: ") + problem.what(), {}};
+  }
+}
+
+}  // namespace burin::job
