@@ -132,7 +132,7 @@ TEST(JointPath, PassesThroughAPole) {
 Kinematics one_sided() {
   model::Machine machine = *model::find_machine("xyzac-trunnion");
   for (model::Axis& axis : machine.axes)
-    if (axis.letter == 'A') axis.min = -0.5, axis.max = 100;
+    if (axis.letter == 'A') axis.min = 0, axis.max = 100;
   return *Kinematics::make(machine);
 }
 

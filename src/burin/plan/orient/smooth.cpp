@@ -25,6 +25,9 @@ constexpr double kOverspeed = 1000;
 // Rounds of refinement about the path found: yaws at these steps, each way.
 constexpr double kRefine[] = {1.25 * kDegree, 0.3 * kDegree};
 constexpr int kRefineYaws = 5;
+// Sweeps that ease accelerations, to and fro; a change has to bring the share down by this much of itself.
+constexpr int kSweeps = 20;
+constexpr double kWorthwhile = 0.01;
 
 /// A stretch of points that have allowed angles.
 class Stretch {
@@ -52,6 +55,7 @@ class Stretch {
       for (std::size_t i = 0; i < count_; ++i) layers_[i] = fine(i, step);
       choose(kOverspeed);
     }
+    ease();
     return chosen_;
   }
 
@@ -154,6 +158,57 @@ class Stretch {
         if (alpha > first.alpha) add(layer, i, {alpha, beta});
     }
     return layer;
+  }
+
+  /// Where the rotary axes would have to change their speed faster than they can, angles move to the middle
+  /// of their neighbours' as long as that is allowed and helps: a second difference goes down where it stands
+  /// out and is spread over its neighbourhood.
+  void ease() {
+    if (motion_.axes() == 0 || count_ < 3) return;
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      bool any = false;
+      const auto at_point = [&](std::size_t i) {
+        if (share_about(i, chosen_[i]) > 1) any |= eased(i);
+      };
+      for (std::size_t i = 0; i < count_; ++i) at_point(i);
+      for (std::size_t i = count_; i-- > 0;) at_point(i);
+      if (!any) return;
+    }
+  }
+
+  /// Larger of the shares of acceleration at the point and beside it, and of speed next to it, with `here` in
+  /// its place.
+  double share_about(std::size_t i, const Choice& here) const {
+    const auto choice = [&](std::size_t k) -> const Choice& { return k == i ? here : chosen_[k]; };
+    double share = 0;
+    for (std::size_t k = i > 0 ? i - 1 : i; k <= i + 1; ++k) {
+      if (k == 0 || k + 1 >= count_) continue;
+      const Shares there = shares_along(motion_, {choice(k - 1).pose, choice(k).pose, choice(k + 1).pose});
+      share = std::max({share, there.acceleration, there.speed});
+    }
+    return share;
+  }
+
+  bool eased(std::size_t i) {
+    const Angles& before = chosen_[i > 0 ? i - 1 : i].angles;
+    const Angles& after = chosen_[i + 1 < count_ ? i + 1 : i].angles;
+    const Angles here = chosen_[i].angles;
+    const Angles middle{0.5 * (before.alpha + after.alpha), 0.5 * (before.beta + after.beta)};
+    Layer tries;
+    for (const double share : {0.5, 1.0}) {
+      const Angles to{here.alpha + share * (middle.alpha - here.alpha),
+                      here.beta + share * (middle.beta - here.beta)};
+      add(tries, i, to);
+      const Scene::FirstFree first = first_allowed(setting_, at(i), to.beta, to.alpha, memory_);
+      if (first.found) add(tries, i, {first.alpha, to.beta});
+    }
+    double least = (1 - kWorthwhile) * share_about(i, chosen_[i]);
+    bool better = false;
+    for (const Choice& choice : tries) {
+      const double share = share_about(i, choice);
+      if (share < least) least = share, chosen_[i] = choice, better = true;
+    }
+    return better;
   }
 
   const Setting& setting_;
