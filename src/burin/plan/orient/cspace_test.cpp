@@ -114,7 +114,8 @@ void judge(World& world, std::mt19937& random, Figures& figures) {
   const Optimum contour = find_by_contour(setting, at, other);
   EXPECT_TRUE(contour.found);
   EXPECT_TRUE(world.referee.free(at, contour.angles, kDeflection)) << text(contour.angles);
-  EXPECT_LE(contour.value, best.value / 0.999) << text(contour.angles) << text(best.angles);
+  // Facets make steps of the first allowed tilt that are narrower than any sampling of the yaw.
+  EXPECT_LE(contour.value, best.value / 0.998) << text(contour.angles) << text(best.angles);
   EXPECT_GE(contour.value, contour.initial_value);
   figures.worst_contour = std::min(figures.worst_contour, contour.value / best.value);
   figures.sum_contour += contour.value / best.value;
