@@ -258,8 +258,8 @@ double depth(const model::Mill& mill, const CcPoint& at, const Angles& angles, c
   return deepest;
 }
 
-/// What the search rests on (Goal): with more tilt at the same yaw no wider strip, among poses that do not
-/// cut in beside the contact point.
+/// What the search rests on; the goal, the narrower side, grows more often (docs/strip.md). With more tilt at
+/// the same yaw no wider strip, among poses that do not cut in beside the contact point.
 TEST(Strip, DoesNotGrowWithTheTilt) {
   Random random;
   double worst = 0;
