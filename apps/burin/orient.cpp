@@ -9,6 +9,7 @@
 #include "burin/base/parallel.h"
 #include "burin/base/text.h"
 #include "burin/cl/apt.h"
+#include "burin/job/orient_check.h"
 #include "burin/plan/orient/to_cl.h"
 #include "burin/post/emit_tcp.h"
 #include "burin/view/orient_html.h"
@@ -35,6 +36,15 @@ struct OrientRun {
   std::optional<kinematics::JointPath> joints;  ///< of a job with a machine
   std::optional<post::NcText> nc;
 };
+
+/// Share of the tolerance by which the tip may leave the tool path between two blocks: what the poses may
+/// gouge is the whole tolerance already.
+constexpr double kJointShare = 0.1;
+
+/// Share of the tolerance that the motion between two poses may gouge more than they do
+/// (plan/orient/motion_check: a quarter, and what a step of its check may miss); beyond it is worth a
+/// warning.
+constexpr double kMotionShare = 0.5;
 
 // --- points.csv
 
@@ -223,7 +233,7 @@ Json comparison_json(const orient::Comparison& c) {
           {"cut_mm", c.cut_mm},       {"cut_min", c.minutes}};
 }
 
-void fill_report(const OrientSetup& setup, const OrientRun& run, std::optional<double> gouge_mm,
+void fill_report(const OrientSetup& setup, const OrientRun& run, const std::optional<job::OrientCheck>& check,
                  Session& session) {
   const orient::OrientPlan& plan = run.plan;
   Report& r = session.report;
@@ -253,7 +263,12 @@ void fill_report(const OrientSetup& setup, const OrientRun& run, std::optional<d
   r.quality = {{"rho_gain_mean", plan.gain_mean},
                {"rho_gain_per_path", plan.gain_per_path},
                {"axis_step_max_deg", degrees(plan.axis_step_max)},
-               {"gouge_max_mm", gouge_mm ? Json(*gouge_mm) : Json(nullptr)}};
+               {"gouge_max_mm", check ? Json(check->gouge_max_mm()) : Json(nullptr)}};
+  if (check) {
+    r.quality["gouge_cutter_mm"] = check->cutter.mm;
+    r.quality["gouge_holder_mm"] = check->holder.mm;
+    r.quality["bound_mm"] = check->bound_mm;
+  }
   if (setup.file.options.smooth) {
     r.quality["smooth_loss_mean"] = loss;
     r.quality["rotary_speed_share_max"] = speed;
@@ -269,6 +284,34 @@ void fill_report(const OrientSetup& setup, const OrientRun& run, std::optional<d
     r.time_s[c.name + "_machining"] = c.possible ? Json(60 * c.minutes) : Json(nullptr);
   }
   r.extra["comparisons"] = std::move(comparisons);
+}
+
+/// What the independent check found beyond the tolerance.
+void warn_of_gouge(const OrientSetup& setup, const job::OrientCheck& check, Session& session) {
+  const auto say = [&](const verify::MillFinding& found, const char* what, double allowed) {
+    if (found.mm <= allowed + check.bound_mm) return;
+    session.diagnostics.add({Severity::left_out,
+                             "gouge",
+                             std::string("the ") + what + " gets " + format_fixed(found.mm, 4) +
+                                 " mm into the part at record " + std::to_string(found.move) +
+                                 " of the CL data",
+                             {},
+                             std::array{found.at.x, found.at.y, found.at.z}});
+  };
+  say(check.cutter, "cutting body", (1 + kMotionShare) * setup.file.options.tolerance_mm);
+  say(check.holder, "shank, holder or head", 0);
+}
+
+/// The motion as it will run, by code that shares nothing with the planner.
+Result<job::OrientCheck> check_motion(const OrientArgs& args, const OrientSetup& setup, const OrientRun& run,
+                                      const Session& session) {
+  // A hundredth of the tolerance each: what is found is then right to a percent or so.
+  const double share = 0.01 * setup.file.options.tolerance_mm;
+  const job::OrientCheckOptions options{share, share, static_cast<unsigned>(session.common.threads)};
+  if (run.path.program.move_count() == 0) return job::OrientCheck{};
+  if (run.joints && !args.tcp)
+    return job::check_orient_job(setup.part, setup.file.mill, *setup.machine, *run.joints, options);
+  return job::check_orient_job(setup.part, setup.file.mill, run.path.program, options);
 }
 
 // --- pictures
@@ -366,7 +409,7 @@ Result<void> make_motion(const OrientArgs& args, const OrientSetup& setup, const
     return {};
   }
   kinematics::JointPathOptions joints;
-  joints.tolerance_mm = o.tolerance_mm;
+  joints.tolerance_mm = kJointShare * o.tolerance_mm;
   auto joint_path = kinematics::make_joint_path(*setup.machine, run.path.program, joints);
   if (!joint_path) return joint_path.error();
   run.joints = std::move(*joint_path);
@@ -434,9 +477,16 @@ Result<void> run_orient(const OrientArgs& args, Session& session) {
   if (auto ok = judge(args, *setup, run.plan, session); !ok) return in_file(ok.error());
   if (auto ok = make_motion(args, *setup, scene, limits, *dialect, !names->nc.empty(), run, session); !ok)
     return in_file(ok.error());
+  std::optional<job::OrientCheck> check;
+  if (!session.common.json.empty() || !session.common.html.empty()) {
+    auto checked = check_motion(args, *setup, run, session);
+    if (!checked) return in_file(checked.error());
+    check = std::move(*checked);
+    warn_of_gouge(*setup, *check, session);
+  }
   session.end_progress();
   session.diagnostics.locate(args.job);
-  fill_report(*setup, run, std::nullopt, session);
+  fill_report(*setup, run, check, session);
   return put_outputs(args, *setup, run, scene, limits, names->nc, names->cl, session);
 }
 

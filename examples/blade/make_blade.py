@@ -5,17 +5,14 @@ and more turned the farther out. Drawing x, y are the part's y, z; the rotary ax
 """
 import math
 import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from outline import arc, dxf, turned  # noqa: E402
 
 # name, half chord, radius of the edges, radius of the sides, degrees
 SECTIONS = [("root", 18.0, 1.6, 40.0, 0.0), ("middle", 16.0, 1.4, 38.0, 14.0), ("upper", 14.0, 1.2, 37.0, 27.0),
             ("tip", 12.0, 1.0, 36.0, 38.0)]
-
-
-def arc(center, radius, start, end):
-    """A vertex at `start` (degrees) with the bulge of the counter-clockwise arc to `end`."""
-    sweep = math.radians((end - start) % 360)
-    a = math.radians(start)
-    return center[0] + radius * math.cos(a), center[1] + radius * math.sin(a), math.tan(sweep / 4)
 
 
 def section(half, edge, side, turn):
@@ -25,18 +22,7 @@ def section(half, edge, side, turn):
     upper = math.degrees(math.atan2(away, c))  # direction from the centre of the upper side to the right edge
     vertices = [arc((c, 0.0), edge, -upper, upper), arc((0.0, -away), side, upper, 180 - upper),
                 arc((-c, 0.0), edge, 180 - upper, 180 + upper), arc((0.0, away), side, 180 + upper, -upper)]
-    a = math.radians(turn)
-    return [(x * math.cos(a) - y * math.sin(a), x * math.sin(a) + y * math.cos(a), bulge) for x, y, bulge in vertices]
-
-
-def dxf(vertices):
-    pairs = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1015"), (9, "$INSUNITS"), (70, 4), (0, "ENDSEC"),
-             (0, "SECTION"), (2, "ENTITIES"), (0, "LWPOLYLINE"), (5, "1F"), (100, "AcDbEntity"), (8, "0"),
-             (100, "AcDbPolyline"), (90, len(vertices)), (70, 1)]
-    for x, y, bulge in vertices:
-        pairs += [(10, f"{x:.9f}"), (20, f"{y:.9f}"), (42, f"{bulge:.12f}")]
-    pairs += [(0, "ENDSEC"), (0, "EOF")]
-    return "".join(f"{code}\n{value}\n" for code, value in pairs)
+    return turned(vertices, turn)
 
 
 if __name__ == "__main__":

@@ -6,17 +6,14 @@ Drawing x, y are the part's y, z; the rotary axis is at 0, 0.
 """
 import math
 import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from outline import arc, dxf  # noqa: E402
 
 BASE = 14.0
 # Direction of the lobe in degrees, distance and radius of its nose, radius of its flanks.
 LOBES = [(90.0, 15.0, 6.0, 45.0), (250.0, 8.0, 9.0, 60.0)]
-
-
-def arc(center, radius, start, end):
-    """A vertex at `start` (degrees) with the bulge of the counter-clockwise arc to `end`."""
-    sweep = math.radians((end - start) % 360)
-    a = math.radians(start)
-    return center[0] + radius * math.cos(a), center[1] + radius * math.sin(a), math.tan(sweep / 4)
 
 
 def lobe(at, distance, nose, flank):
@@ -48,16 +45,6 @@ def section():
         vertices += own
         vertices.append(arc((0, 0), BASE, leaves, parts[(i + 1) % len(parts)][1]))
     return vertices
-
-
-def dxf(vertices):
-    pairs = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1015"), (9, "$INSUNITS"), (70, 4), (0, "ENDSEC"),
-             (0, "SECTION"), (2, "ENTITIES"), (0, "LWPOLYLINE"), (5, "1F"), (100, "AcDbEntity"), (8, "0"),
-             (100, "AcDbPolyline"), (90, len(vertices)), (70, 1)]
-    for x, y, bulge in vertices:
-        pairs += [(10, f"{x:.9f}"), (20, f"{y:.9f}"), (42, f"{bulge:.12f}")]
-    pairs += [(0, "ENDSEC"), (0, "EOF")]
-    return "".join(f"{code}\n{value}\n" for code, value in pairs)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,10 @@ Drawing x, y are the part's y, z; the rotary axis is at 0, 0.
 """
 import math
 import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from outline import dxf, turned  # noqa: E402
 
 RADIUS = 16.0
 NECK, WING, NECK_DEPTH, WING_DEPTH = 7.0, 15.0, 4.0, 9.0  # T-slot: widths, depths below the shaft's surface
@@ -24,11 +28,6 @@ def t_slot():
     return [(-n, top), (-n, shelf), (-w, shelf), (-w, floor), (w, floor), (w, shelf), (n, shelf), (n, top)]
 
 
-def turned(points, degrees):
-    a = math.radians(degrees)
-    return [(x * math.cos(a) - y * math.sin(a), x * math.sin(a) + y * math.cos(a)) for x, y in points]
-
-
 def section():
     """Counter-clockwise: the T-slot at the top, the keyway at the bottom, arcs of the shaft between them."""
     vertices = []
@@ -43,16 +42,6 @@ def section():
 def reversed_(points):
     """Counter-clockwise about the axis the right wall comes first."""
     return points[::-1]
-
-
-def dxf(vertices):
-    pairs = [(0, "SECTION"), (2, "HEADER"), (9, "$ACADVER"), (1, "AC1015"), (9, "$INSUNITS"), (70, 4), (0, "ENDSEC"),
-             (0, "SECTION"), (2, "ENTITIES"), (0, "LWPOLYLINE"), (5, "1F"), (100, "AcDbEntity"), (8, "0"),
-             (100, "AcDbPolyline"), (90, len(vertices)), (70, 1)]
-    for x, y, bulge in vertices:
-        pairs += [(10, f"{x:.9f}"), (20, f"{y:.9f}"), (42, f"{bulge:.12f}")]
-    pairs += [(0, "ENDSEC"), (0, "EOF")]
-    return "".join(f"{code}\n{value}\n" for code, value in pairs)
 
 
 if __name__ == "__main__":

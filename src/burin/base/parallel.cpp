@@ -1,48 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "burin/base/parallel.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
-#include <vector>
 
 namespace burin {
 
 void parallel_for(std::size_t count, unsigned threads,
                   const std::function<void(std::size_t task, std::size_t worker)>& body) {
-  const std::size_t workers = std::min<std::size_t>(std::max(1U, threads), count);
+  // More than the machine has do no good, and oneTBB prints a warning.
+  const auto machine = static_cast<unsigned>(std::max(1, tbb::info::default_concurrency()));
+  const std::size_t workers = std::min<std::size_t>(std::clamp(threads, 1U, machine), count);
   if (workers <= 1) {
     for (std::size_t i = 0; i < count; ++i) body(i, 0);
     return;
   }
-  std::atomic<std::size_t> next{0};
+  // The lowest task that threw so far: those above it are not begun, those below still run, so that it does
+  // not depend on the threads whose exception comes out.
+  std::atomic<std::size_t> thrown_by{count};
   std::mutex mutex;
   std::exception_ptr thrown;
-  std::size_t thrown_by = count;
-  const auto work = [&](std::size_t worker) {
-    for (std::size_t i = next++; i < count; i = next++) {
-      try {
-        body(i, worker);
-      } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (i < thrown_by) thrown_by = i, thrown = std::current_exception();
-        next = count;  // what has not begun is not begun
-        return;
-      }
+  const auto run = [&](std::size_t task) {
+    if (task > thrown_by) return;
+    try {
+      body(task, static_cast<std::size_t>(tbb::this_task_arena::current_thread_index()));
+    } catch (...) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      if (task < thrown_by) thrown_by = task, thrown = std::current_exception();
     }
   };
-  std::vector<std::thread> others;
-  others.reserve(workers - 1);
-  try {
-    for (std::size_t w = 1; w < workers; ++w) others.emplace_back(work, w);
-  } catch (const std::system_error&) {
-    // No more threads are to be had: those that run do the work.
-  }
-  work(0);
-  for (std::thread& t : others) t.join();
+  // An arena of its own: a thread that waits here takes no task of an outer loop, whose worker it is.
+  tbb::task_arena arena(static_cast<int>(workers));
+  arena.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i != range.end(); ++i) run(i);
+        },
+        tbb::simple_partitioner());
+  });
   if (thrown) std::rethrow_exception(thrown);
 }
 

@@ -53,7 +53,7 @@ std::string encode_png(int width, int height, const std::vector<std::uint8_t>& r
   }
   uLongf size = compressBound(static_cast<uLong>(rows.size()));
   std::string packed(size, '\0');
-  compress2(reinterpret_cast<Bytef*>(packed.data()), &size, rows.data(), static_cast<uLong>(rows.size()), 9);
+  compress2(reinterpret_cast<Bytef*>(packed.data()), &size, rows.data(), static_cast<uLong>(rows.size()), 6);
   packed.resize(size);
   std::string header;
   put32(header, static_cast<std::uint32_t>(width));

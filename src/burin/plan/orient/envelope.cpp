@@ -15,22 +15,26 @@ constexpr double kCoarsest = 3 * geom::kPi / 180;
 constexpr double kFinest = 1e-4;
 // Share of the goal that more samples must promise: a part of kOptimumShare.
 constexpr double kPromise = kOptimumShare / 2;
-// Where the goal has a corner between samples it rises by up to four times what parabolas through them say.
-constexpr double kCorner = 4;
+// The goal counts as smooth where parabolas through neighbouring samples bend alike within this factor, and
+// then rises by at most that times what they say.
+constexpr double kSmooth = 3;
 constexpr std::size_t kMostNodes = 600;
 
-/// The parabola through three places, over [lo, hi] of yaw: by how much it rises above `base`, and where.
+double bend(const Envelope::Node& a, const Envelope::Node& b, const Envelope::Node& c) {
+  const double ab = (b.value - a.value) / (b.beta - a.beta), bc = (c.value - b.value) / (c.beta - b.beta);
+  return (bc - ab) / (c.beta - a.beta);
+}
+/// The parabola through three places, bent downwards, over [lo, hi] of yaw: by how much it rises above
+/// `base`, and where.
 struct Rise {
   double by = 0, at = 0;
 };
 Rise parabola(const Envelope::Node& a, const Envelope::Node& b, const Envelope::Node& c, double lo, double hi,
               double base) {
-  const double ab = (b.value - a.value) / (b.beta - a.beta), bc = (c.value - b.value) / (c.beta - b.beta);
-  const double bend = (bc - ab) / (c.beta - a.beta);
-  if (!(bend < 0)) return {0, (lo + hi) / 2};
-  // value(x) = a + ab (x - a) + bend (x - a) (x - b)
-  const double x = std::clamp((a.beta + b.beta) / 2 - ab / (2 * bend), lo, hi);
-  return {a.value + ab * (x - a.beta) + bend * (x - a.beta) * (x - b.beta) - base, x};
+  const double ab = (b.value - a.value) / (b.beta - a.beta), down = bend(a, b, c);
+  // value(x) = a + ab (x - a) + down (x - a) (x - b)
+  const double x = std::clamp((a.beta + b.beta) / 2 - ab / (2 * down), lo, hi);
+  return {a.value + ab * (x - a.beta) + down * (x - a.beta) * (x - b.beta) - base, x};
 }
 
 }  // namespace
@@ -54,26 +58,59 @@ Envelope::Envelope(const Setting& setting, const Goal& goal, const CcPoint& at, 
     const auto after = std::lower_bound(yaws.begin(), yaws.end(), *guess);
     if (*after - *guess > kFinest && *guess - *(after - 1) > kFinest) yaws.insert(after, *guess);
   }
+  if (guess) {
+    const auto near = std::min_element(yaws.begin(), yaws.end(), [&](double a, double b) {
+      return std::abs(a - *guess) < std::abs(b - *guess);
+    });
+    guessed_ = static_cast<std::size_t>(near - yaws.begin());
+  }
   nodes_.reserve(2 * yaws.size());
-  for (const double beta : yaws) nodes_.push_back(sample(beta, range.alpha_lo));
+  for (const double beta : yaws) nodes_.push_back(fresh(beta));
 }
 
-Envelope::Node Envelope::sample(double beta, double from) const {
+Envelope::Node Envelope::fresh(double beta) const {
   Node node;
   node.beta = beta;
-  node.alpha = known_.first_tilt(beta, from, setting_.range.alpha_hi);
-  node.value = node.alpha <= setting_.range.alpha_hi ? goal_.value(at_, {node.alpha, beta}) : kNever;
+  node.alpha = setting_.range.alpha_lo;
+  node.value = goal_.value(at_, {node.alpha, beta});
+  node.gate = std::numeric_limits<double>::infinity();
   return node;
 }
 
-std::optional<std::size_t> Envelope::open(double gate) const {
+void Envelope::look(Node& node, double gate) const {
+  const AngleRange& range = setting_.range;
+  const double end =
+      gate == kNever ? range.alpha_hi : goal_.tilt_of(at_, gate, node.beta, node.alpha, range.alpha_hi);
+  const Relaxation::Reach reach = known_.blocked_from(node.beta, node.alpha, end);
+  node.gate = gate;
+  node.alpha = reach.alpha;
+  if (!reach.covered)
+    node.value = goal_.value(at_, {reach.alpha, node.beta});
+  else
+    node.value = end >= range.alpha_hi ? kNever : gate;
+}
+
+std::optional<std::size_t> Envelope::open(double gate) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const Node& node = nodes_[i];
+    Node& node = nodes_[i];
     if (node.exact || !(node.value > gate)) continue;
+    if (node.gate > gate) look(node, gate);
+    if (!(node.value > gate)) continue;
     if (!best || node.value > nodes_[*best].value) best = i;
   }
   return best;
+}
+
+std::optional<double> Envelope::foretell(std::size_t i) const {
+  const bool left = i > 0 && exact(i - 1), right = exact(i + 1);
+  if (!left && !right) return std::nullopt;
+  const auto line = [&](const Node& a, const Node& b) {
+    return a.alpha + (b.alpha - a.alpha) * (nodes_[i].beta - a.beta) / (b.beta - a.beta);
+  };
+  if (left && right) return line(nodes_[i - 1], nodes_[i + 1]);
+  if (left) return i > 1 && exact(i - 2) ? line(nodes_[i - 2], nodes_[i - 1]) : nodes_[i - 1].alpha;
+  return exact(i + 2) ? line(nodes_[i + 1], nodes_[i + 2]) : nodes_[i + 1].alpha;
 }
 
 void Envelope::raise(std::size_t i, double alpha, bool exact) {
@@ -83,12 +120,14 @@ void Envelope::raise(std::size_t i, double alpha, bool exact) {
   node.value = goal_.value(at_, {alpha, node.beta});
 }
 
+void Envelope::exclude(std::size_t i, double alpha, double gate) {
+  nodes_[i].alpha = alpha;
+  nodes_[i].value = alpha >= setting_.range.alpha_hi ? kNever : gate;
+}
+
 void Envelope::learn(double gate) {
-  const std::size_t newest = known_.size() - 1;
-  for (Node& node : nodes_) {
-    if (node.exact || !(node.value > gate) || !known_.blocks(newest, {node.alpha, node.beta})) continue;
-    node = sample(node.beta, node.alpha);
-  }
+  for (Node& node : nodes_)
+    if (!node.exact && node.value > gate && known_.newest_blocks({node.alpha, node.beta})) look(node, gate);
 }
 
 double Envelope::by_tilts(std::size_t j) const {
@@ -111,27 +150,35 @@ double Envelope::by_tilts(std::size_t j) const {
 double Envelope::between(std::size_t j, double& beta) const {
   const Node &a = nodes_[j], &b = nodes_[j + 1];
   beta = (a.beta + b.beta) / 2;
-  if (!a.possible() && !b.possible()) return kNever;
-  double curves = std::numeric_limits<double>::infinity();
-  if (a.exact && b.exact) {
-    const double base = std::max(a.value, b.value), width = b.beta - a.beta;
-    // Not at the samples themselves.
-    const double lo = a.beta + 0.1 * width, hi = b.beta - 0.1 * width;
-    Rise most{0, beta};
-    int curved = 0;
-    for (const bool left : {true, false}) {
-      if (left ? !(j > 0 && exact(j - 1)) : !exact(j + 2)) continue;
-      const Rise rise =
-          left ? parabola(nodes_[j - 1], a, b, lo, hi, base) : parabola(a, b, nodes_[j + 2], lo, hi, base);
-      if (rise.by > most.by) most = rise;
-      ++curved;
-    }
-    if (curved > 0) {
-      curves = base + kCorner * most.by;
-      beta = most.at;
+  // Where neither comes near the best nothing between them is expected to.
+  if (!a.exact && !b.exact) return kNever;
+  const double most = by_tilts(j);
+  if (!a.exact || !b.exact) return most;
+  const Node* before = j > 0 && exact(j - 1) ? &nodes_[j - 1] : nullptr;
+  const Node* after = exact(j + 2) ? &nodes_[j + 2] : nullptr;
+  const double base = std::max(a.value, b.value), width = b.beta - a.beta;
+  if (before && after) {
+    const double left = bend(*before, a, b), right = bend(a, b, *after);
+    if (left < 0 && right < 0 && left > kSmooth * right && right > kSmooth * left) {
+      // A smooth hump: the parabolas know it.
+      const Rise one = parabola(*before, a, b, a.beta, b.beta, base),
+                 two = parabola(a, b, *after, a.beta, b.beta, base);
+      const Rise& more = one.by > two.by ? one : two;
+      // Not at the samples themselves.
+      beta = std::clamp(more.at, a.beta + 0.1 * width, b.beta - 0.1 * width);
+      return std::min(most, base + kSmooth * std::max(more.by, 0.0));
     }
   }
-  return std::min(curves, by_tilts(j));
+  // A corner may stand between them: as high as the lines from either side go.
+  const double rise_a = before ? std::max(0.0, (a.value - before->value) / (a.beta - before->beta)) : 0;
+  const double rise_b = after ? std::max(0.0, (b.value - after->value) / (after->beta - b.beta)) : 0;
+  if (before && after && rise_a > 0 && rise_b > 0) {
+    const double x = std::clamp((b.value - a.value + rise_b * width) / (rise_a + rise_b), 0.0, width);
+    beta = a.beta + std::clamp(x, 0.1 * width, 0.9 * width);
+    return std::min(most, a.value + rise_a * x);
+  }
+  if (!before && !after) return most;
+  return std::min(most, std::max(a.value + rise_a * width, b.value + rise_b * width));
 }
 
 bool Envelope::refine(double found) {
@@ -143,7 +190,7 @@ bool Envelope::refine(double found) {
     finer.push_back(nodes_[j]);
     if (j + 1 == nodes_.size() || nodes_[j + 1].beta - nodes_[j].beta < kFinest) continue;
     double beta = 0;
-    if (between(j, beta) > enough) finer.push_back(sample(beta, setting_.range.alpha_lo));
+    if (between(j, beta) > enough) finer.push_back(fresh(beta));
   }
   const bool more = finer.size() > nodes_.size();
   nodes_.swap(finer);

@@ -25,18 +25,23 @@ class CauseCount {
   std::array<int, 5> counts_{};
 };
 
-/// What stands in the way at one pose, `known` first.
-Cause hindrance(const Setting& setting, const CcPoint& at, const Angles& angles, Relaxation& known,
-                Scene::Memory& memory) {
+/// What stands in the way at one pose, `known` first; learn: it is added to that.
+Cause hindrance(const Setting& setting, const CcPoint& at, const Angles& angles, bool learn,
+                Relaxation& known, Scene::Memory& memory) {
   const Scene& scene = *setting.scene;
   if (const auto place = known.blocked(angles)) return scene.body()[known.witness(*place).piece].cause;
+  const cl::Pose there = pose(at, angles, scene.mill());
+  if (!learn) {
+    if (const auto blocker = scene.blocker(there, memory)) return scene.body()[blocker->piece].cause;
+    return setting.limits->within(there) ? Cause::none : Cause::limit;
+  }
   const double beta = angles.alpha > kNoTilt ? angles.beta : 0;
   const Scene::FirstFree here = scene.first_free(at, beta, angles.alpha, angles.alpha, memory);
   if (!here.found) {
     if (here.witness) known.add(*here.witness);
     return here.cause;
   }
-  return setting.limits->within(pose(at, angles, scene.mill())) ? Cause::none : Cause::limit;
+  return setting.limits->within(there) ? Cause::none : Cause::limit;
 }
 
 /// The first allowed place of the curve: steps from its start, which is forbidden, then bisection. What is
@@ -47,7 +52,7 @@ Initial first_on(const StartCurve& curve, const Setting& setting, const CcPoint&
   double out = 0, in = 0;
   for (int k = 1; k <= kCurveSteps && !found.found; ++k) {
     in = static_cast<double>(k) / kCurveSteps;
-    const Cause there = hindrance(setting, at, curve.at(in), known, memory);
+    const Cause there = hindrance(setting, at, curve.at(in), true, known, memory);
     found.found = there == Cause::none;
     if (found.found) break;
     found.cause = there;
@@ -57,7 +62,7 @@ Initial first_on(const StartCurve& curve, const Setting& setting, const CcPoint&
   if (!found.found) return found;
   while (in - out > kCurveTolerance) {
     const double middle = (in + out) / 2;
-    const Cause there = hindrance(setting, at, curve.at(middle), known, memory);
+    const Cause there = hindrance(setting, at, curve.at(middle), false, known, memory);
     if (there == Cause::none) {
       in = middle;
     } else {
@@ -77,9 +82,9 @@ Initial enumerated(const Setting& setting, const CcPoint& at, Relaxation& known,
   for (int k = 0; k <= 2 * kEnumeratedYaws; ++k) {
     const double beta = middle + (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) * step;
     if (beta < range.beta_lo || beta > range.beta_hi || (k > 0 && step <= 0)) continue;
-    const double from = known.first_tilt(beta, range.alpha_lo, range.alpha_hi);
-    if (from > range.alpha_hi) continue;
-    const Scene::FirstFree free = first_allowed(setting, at, beta, from, memory);
+    const Relaxation::Reach reach = known.blocked_from(beta, range.alpha_lo, range.alpha_hi);
+    if (reach.covered) continue;
+    const Scene::FirstFree free = first_allowed(setting, at, beta, reach.alpha, memory);
     if (free.witness) known.add(*free.witness);
     if (free.found) return {true, false, {free.alpha, beta}, free.cause};
     causes.add(free.cause);
@@ -105,7 +110,7 @@ Initial initial_solution(const Setting& setting, const CcPoint& at, Relaxation& 
   const AngleRange& range = setting.range;
   const Angles corner = range.widest();
   CauseCount causes;
-  const Cause at_corner = hindrance(setting, at, corner, known, memory);
+  const Cause at_corner = hindrance(setting, at, corner, true, known, memory);
   if (at_corner == Cause::none) return {true, true, corner, Cause::bound};
   causes.add(at_corner);
   // The farther end of the yaws first.

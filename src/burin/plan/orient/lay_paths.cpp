@@ -5,6 +5,7 @@
 // passed equal amounts.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
@@ -22,6 +23,8 @@ using geom::Point3;
 constexpr int kCoarse = 13, kRounds = 6, kMendings = 24;
 /// Loads are planned for this share of what is allowed, so that small errors of the prediction do no harm.
 constexpr double kPlanned = 0.995;
+/// Another round is worth its lanes when it leaves at most this share of the paths.
+constexpr double kWorthwhile = 0.98;
 /// Places of w between two lanes that the density is worked out at.
 constexpr int kInner = 16;
 /// Lanes nearer than this are one.
@@ -39,6 +42,19 @@ class StripFinder {
 
   /// Nothing when no part of the lane is within `reach`, or it is unreachable there.
   std::optional<Strip> at(Point3 place, double reach) {
+    if (!near(place, reach)) return std::nullopt;
+    const auto& p = lane_.pieces[piece_];
+    const auto& s = lane_.strips[piece_];
+    const std::size_t k = segment_, l = std::min(k + 1, p.size() - 1);
+    if (!(s[k].width() > 0) || !(s[l].width() > 0)) return std::nullopt;
+    const geom::Vec3 way = p[l].c - p[k].c;
+    const double length2 = dot(way, way);
+    const double x = length2 > 0 ? std::clamp(dot(place - p[k].c, way) / length2, 0.0, 1.0) : 0;
+    return Strip{s[k].left + x * (s[l].left - s[k].left), s[k].right + x * (s[l].right - s[k].right)};
+  }
+
+  /// Whether some of the lane is within `reach`; it is then the place that at() begins to look from.
+  bool near(Point3 place, double reach) {
     double best = std::numeric_limits<double>::infinity();
     std::size_t best_piece = 0, best_segment = 0;
     const auto look = [&](std::size_t piece, std::size_t segment) {
@@ -69,16 +85,9 @@ class StripFinder {
         for (std::size_t k = 0; k + 1 < lane_.pieces[i].size(); ++k) look(i, k);
       }
     }
-    if (!(best <= reach)) return std::nullopt;
+    if (!(best <= reach)) return false;
     piece_ = best_piece, segment_ = best_segment;
-    const auto& p = lane_.pieces[piece_];
-    const auto& s = lane_.strips[piece_];
-    const std::size_t k = segment_, l = std::min(k + 1, p.size() - 1);
-    if (!(s[k].width() > 0) || !(s[l].width() > 0)) return std::nullopt;
-    const geom::Vec3 way = p[l].c - p[k].c;
-    const double length2 = dot(way, way);
-    const double x = length2 > 0 ? std::clamp(dot(place - p[k].c, way) / length2, 0.0, 1.0) : 0;
-    return Strip{s[k].left + x * (s[l].left - s[k].left), s[k].right + x * (s[l].right - s[k].right)};
+    return true;
   }
 
  private:
@@ -98,7 +107,16 @@ double one_way_load(const PathFamily& family, const Lane& a, const Lane& b) {
     StripFinder finder(b);
     for (std::size_t k = 0; k < there.size(); ++k) {
       const Strip& mine = a.strips[i][k];
-      if (!there[k].found || !(mine.width() > 0)) continue;
+      if (!(mine.width() > 0)) continue;
+      if (!there[k].found && std::isfinite(there[k].border)) {
+        // A border between the two, and the neighbour has nothing near: this lane alone covers up to it (the
+        // top of a lobe, a hole's rim). Where the neighbour ends near by, the border only slants.
+        if (!finder.near(there[k].place, there[k].distance)) {
+          load = std::max(load, load_of(there[k].border, there[k].left ? mine.left : mine.right));
+        }
+        continue;
+      }
+      if (!there[k].found) continue;
       const auto other = finder.at(there[k].place, kBeyondEnd * there[k].distance);
       if (!other) continue;
       const double strips = there[k].left ? mine.left + other->right : mine.right + other->left;
@@ -175,6 +193,9 @@ class Prediction {
  public:
   Prediction(const std::vector<double>& ws, const std::vector<double>& loads);
 
+  /// Nowhere less than another one says: strips that change abruptly are met differently by each set of
+  /// lanes.
+  void raise(const Prediction& other);
   /// Places that bear `load` each, from the first border on; nothing when more than `most` are needed.
   std::optional<std::vector<double>> chain(double load, std::size_t most) const;
   /// The fewest places with loads up to `load`, evened out.
@@ -183,9 +204,11 @@ class Prediction {
  private:
   double sum_to(double w) const;
   double place_of(double sum) const;
+  void add_up();
 
-  std::vector<double> w_, sum_;     ///< integral of the density
-  double before_ = 0, behind_ = 0;  ///< load of the borders by their distance
+  std::vector<double> w_, density_;  ///< between w_[i] and w_[i + 1]
+  std::vector<double> sum_;          ///< its integral up to w_[i]
+  double before_ = 0, behind_ = 0;   ///< load of the borders by their distance
 };
 
 Prediction::Prediction(const std::vector<double>& ws, const std::vector<double>& loads) {
@@ -215,7 +238,7 @@ Prediction::Prediction(const std::vector<double>& ws, const std::vector<double>&
     if (w > ends.back()) ends.push_back(w);
   }
   if (ends.back() < 1) ends.push_back(1);
-  w_.push_back(0), sum_.push_back(0);
+  w_.push_back(0);
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double a = ends[i], b = ends[i + 1], h = (b - a) / kInner;
     double total = 0;
@@ -227,9 +250,31 @@ Prediction::Prediction(const std::vector<double>& ws, const std::vector<double>&
     const double scale = total > 0 ? measured / total : 0;
     for (int k = 0; k < kInner; ++k) {
       w_.push_back(k + 1 < kInner ? a + (k + 1) * h : b);
-      sum_.push_back(sum_.back() + scale * h * density_at(a + (k + 0.5) * h));
+      density_.push_back(scale * density_at(a + (k + 0.5) * h));
     }
   }
+  add_up();
+}
+
+void Prediction::add_up() {
+  sum_.assign(1, 0);
+  for (std::size_t i = 0; i < density_.size(); ++i) {
+    sum_.push_back(sum_.back() + density_[i] * (w_[i + 1] - w_[i]));
+  }
+}
+
+void Prediction::raise(const Prediction& other) {
+  std::vector<double> w, density;
+  std::set_union(w_.begin(), w_.end(), other.w_.begin(), other.w_.end(), std::back_inserter(w));
+  std::size_t i = 0, k = 0;
+  for (std::size_t c = 0; c + 1 < w.size(); ++c) {
+    while (i + 1 < density_.size() && w_[i + 1] <= w[c]) ++i;
+    while (k + 1 < other.density_.size() && other.w_[k + 1] <= w[c]) ++k;
+    density.push_back(std::max(density_[i], other.density_[k]));
+  }
+  w_ = std::move(w), density_ = std::move(density);
+  before_ = std::max(before_, other.before_), behind_ = std::max(behind_, other.behind_);
+  add_up();
 }
 
 double Prediction::sum_to(double w) const {
@@ -240,6 +285,7 @@ double Prediction::sum_to(double w) const {
 }
 
 double Prediction::place_of(double sum) const {
+  if (!(sum_.back() > 0)) return 0.5;
   if (sum >= sum_.back()) return 1;
   const auto next = std::upper_bound(sum_.begin() + 1, sum_.end() - 1, sum);
   const auto i = static_cast<std::size_t>(next - sum_.begin()) - 1;
@@ -249,9 +295,10 @@ double Prediction::place_of(double sum) const {
 
 std::optional<std::vector<double>> Prediction::chain(double load, std::size_t most) const {
   // A border that bears nothing (nothing reachable, none abreast): half a step from it.
-  double w = before_ > 0 ? load / before_ : place_of(0.5 * load);
+  const double half = 0.5 * std::min(load, sum_.back());
+  double w = before_ > 0 ? load / before_ : place_of(half);
   std::vector<double> places{std::clamp(w, 0.0, 1.0)};
-  const double rest = behind_ > 0 ? load / behind_ : 1 - place_of(sum_.back() - 0.5 * load);
+  const double rest = behind_ > 0 ? load / behind_ : 1 - place_of(sum_.back() - half);
   while (places.back() < 1 - rest - kLeastStep) {
     if (places.size() >= most) return std::nullopt;
     w = place_of(sum_to(places.back()) + load);
@@ -325,16 +372,21 @@ Result<std::vector<double>> lay_paths(const PathFamily& family, const LanePlanne
   std::vector<double> loads = loads_of(survey, ws);
   std::optional<std::vector<double>> best;
   if (ws.size() <= max_paths && worst(loads) <= 1) best = ws;
+  std::optional<Prediction> all;  // of all rounds but the first look
+  int attempts = 0;
   for (int round = 0; round < kRounds; ++round) {
-    // What holds already is only given up for fewer.
-    const std::size_t most = best ? best->size() - 1 : max_paths;
-    if (most == 0) break;
-    const auto next = Prediction(ws, loads).places(best ? 1.0 : kPlanned, most);
-    if (!next) {
-      if (best) break;
-      return too_many(max_paths);
+    Prediction latest(ws, loads);
+    if (round > 0 && !best) {
+      if (all) latest.raise(*all);
+      all = latest;
     }
-    if (*next == ws) break;
+    // What holds already is only given up for fewer, and for that two attempts are enough.
+    if (best && ++attempts > 2) break;
+    const std::size_t most = best ? best->size() - 1 : max_paths;
+    const auto next = most > 0 ? latest.places(best ? 1.0 : kPlanned, most) : std::nullopt;
+    if (!next && !best) return too_many(max_paths);
+    if (!next || *next == ws) break;
+    if (best && static_cast<double>(next->size()) > kWorthwhile * static_cast<double>(best->size())) break;
     survey.plan(*next);
     survey.keep(*next);
     ws = *next;

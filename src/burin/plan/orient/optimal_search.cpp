@@ -16,6 +16,8 @@ namespace {
 constexpr int kMostAsked = 400;
 // Yaws that come within this share of the best are found exactly, for the curves through them.
 constexpr double kMargin = 0.04;
+// Share of a foretold tilt at which what blocks below it is looked for.
+constexpr double kShort = 0.03;
 // What the next contact point gets.
 constexpr std::size_t kKeptWitnesses = 40;
 
@@ -27,6 +29,7 @@ class OptimalSearch {
 
   void run(Optimum& best, std::optional<double> guess) {
     Envelope envelope(setting_, goal_, at_, known_, guess);
+    if (envelope.guessed()) ask(envelope, *envelope.guessed(), best);
     for (int asked = 0; asked < kMostAsked;) {
       const auto open = envelope.open(gate(best));
       if (open) {
@@ -55,14 +58,21 @@ class OptimalSearch {
   }
 
   void ask(Envelope& envelope, std::size_t i, Optimum& best) {
-    const double beta = envelope.node(i).beta, from = envelope.node(i).alpha;
     if (beyond_limits(envelope, i)) return;
-    // Only as far as it matters: a walk that ends blocked there names a place well inside the tool, which
-    // speaks for many yaws; one at the end of what is blocked lies on the tool's edge and speaks for few.
+    const double beta = envelope.node(i).beta, lo = setting_.range.alpha_lo, hi = setting_.range.alpha_hi;
+    double from = envelope.node(i).alpha;
     Setting near = setting_;
-    if (best.found)
-      near.range.alpha_hi = std::max(
-          from, goal_.tilt_of(at_, gate(best), beta, setting_.range.alpha_lo, setting_.range.alpha_hi));
+    if (best.found) {
+      // Only as far as it matters; and what blocks there first: it stands well inside the tool and speaks for
+      // many tilts and yaws, one at the end of what is blocked lies on the tool's edge and speaks for few.
+      double to = std::max(from, goal_.tilt_of(at_, gate(best), beta, lo, hi));
+      near.range.alpha_hi = to;
+      // Beside yaws that came near the best this one will as well: just below where they say.
+      const auto foretold = envelope.foretell(i);
+      if (foretold) to = std::min(to, std::max(from, (1 - kShort) * *foretold));
+      if (blocked_up_to(envelope, i, to, to == near.range.alpha_hi, best)) return;
+      from = envelope.node(i).alpha;
+    }
     const Scene::FirstFree free = first_allowed(near, at_, beta, from, memory_);
     if (free.found) {
       const double value = goal_.value(at_, {free.alpha, beta});
@@ -75,9 +85,27 @@ class OptimalSearch {
       envelope.raise(i, free.alpha, true);
     } else {
       count(free.cause);
-      envelope.exclude(i);
+      envelope.exclude(i, near.range.alpha_hi, gate(best));
     }
     if (free.witness && known_.add(*free.witness)) envelope.learn(gate(best));
+  }
+
+  /// all: nothing beyond `to` matters. True: the yaw is done with.
+  bool blocked_up_to(Envelope& envelope, std::size_t i, double to, bool all, const Optimum& best) {
+    const Envelope::Node& node = envelope.node(i);
+    if (to <= kNoTilt || to <= node.alpha) return false;
+    const Scene::FirstFree there = setting_.scene->first_free(at_, node.beta, to, to, memory_);
+    if (there.found || !there.witness || !known_.add(*there.witness)) return false;
+    const Relaxation::Reach reach = known_.blocked_from(node.beta, node.alpha, to);
+    const bool done = reach.covered && all;
+    if (done) {
+      count(there.cause);
+      envelope.exclude(i, to, gate(best));
+    } else {
+      envelope.raise(i, reach.alpha, false);
+    }
+    envelope.learn(gate(best));
+    return done;
   }
 
   /// The machine is asked first: it costs no test.
@@ -86,14 +114,19 @@ class OptimalSearch {
     const double beta = envelope.node(i).beta, from = envelope.node(i).alpha, to = setting_.range.alpha_hi;
     const double kept = first_within(setting_, at_, beta, from, to);
     if (kept == from) return false;
-    const double alpha = kept > to ? kept : known_.first_tilt(beta, kept, to);
+    const double alpha = kept > to ? kept : after(beta, kept, to);
     if (alpha > to) {
       count(Cause::limit);
-      envelope.exclude(i);
+      envelope.exclude(i, to, Envelope::kNever);
     } else {
       envelope.raise(i, alpha, false);
     }
     return true;
+  }
+
+  double after(double beta, double from, double to) const {
+    const Relaxation::Reach reach = known_.blocked_from(beta, from, to);
+    return reach.covered ? std::nextafter(to, 10.0) : reach.alpha;
   }
 
   const Setting& setting_;

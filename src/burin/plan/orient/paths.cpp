@@ -10,6 +10,11 @@
 
 namespace burin::orient {
 
+namespace {
+/// Of the face's size (the diagonal of its control points' box), where no step is given.
+constexpr double kWidestStep = 1.0 / 64;
+}  // namespace
+
 struct PathFamily::State {
   std::unique_ptr<detail::Family> family;
 };
@@ -33,8 +38,11 @@ Result<PathFamily> PathFamily::make(const Part& part, int face, const PathOption
         ErrorCode::usage, "limits of the contact points that are not positive (chord and turn above 0)", {}};
   }
   detail::PathFace patch(design, options.edge_mm);
-  auto family = options.pattern == Pattern::plane ? detail::plane_family(std::move(patch), options)
-                                                  : detail::iso_family(std::move(patch), options);
+  // Angles, strips and obstacles are looked at in the contact points only: not too few of them on flat faces.
+  PathOptions limits = options;
+  if (!(limits.max_step_mm > 0)) limits.max_step_mm = kWidestStep * patch.size();
+  auto family = options.pattern == Pattern::plane ? detail::plane_family(std::move(patch), limits)
+                                                  : detail::iso_family(std::move(patch), limits);
   if (!family) {
     Error error = family.error();
     error.message += "; face " + std::to_string(design.number);

@@ -30,7 +30,7 @@ struct PathOptions {
   /// max_turn between two.
   double chord_mm = 0.01;
   double max_turn = 5 * geom::kPi / 180;
-  double max_step_mm = 0;  ///< 0: none
+  double max_step_mm = 0;  ///< 0: a 64th of the face's size
   double edge_mm = 0;      ///< paths and their ends keep this from the face's border
 };
 
@@ -60,8 +60,8 @@ class PathFamily {
     double border = std::numeric_limits<double>::infinity();
   };
   std::vector<Abreast> abreast(const std::vector<CcPoint>& from, double w, double w_to) const;
-  /// Largest distance between the paths at the two ends of the family over all stations: a length of the
-  /// whole.
+  /// A length of the whole: the largest distance to the neighbour at each w, added up. Equal steps of w are
+  /// equal shares of it, so extent() / count is the largest distance between `count` + 1 even places.
   double extent() const;
 
  private:

@@ -223,7 +223,8 @@ std::optional<double> IsoFamily::meet(geom::SurfaceEvaluator& evaluator, const C
 
 std::vector<PathFamily::Abreast> IsoFamily::abreast(const std::vector<CcPoint>& from, double w,
                                                     double w_to) const {
-  auto evaluator = face_.evaluator();
+  // One for either path: each stays in a span for several contacts.
+  auto evaluator = face_.evaluator(), other_side = face_.evaluator();
   const double s = levels_.at(w), to = levels_.at(w_to);
   std::vector<PathFamily::Abreast> out(from.size());
   double here = t_range().lo;
@@ -238,10 +239,10 @@ std::vector<PathFamily::Abreast> IsoFamily::abreast(const std::vector<CcPoint>& 
     const double across = along_ == Direction::u ? step.y : step.x;
     const double along = along_ == Direction::u ? step.x : step.y;
     const double guess = across != 0 ? here + along / across * (to - s) : here;
-    auto met = std::isfinite(guess) ? meet(evaluator, from[i], guess, to) : std::nullopt;
-    if (!met) met = meet(evaluator, from[i], here, to);
+    auto met = std::isfinite(guess) ? meet(other_side, from[i], guess, to) : std::nullopt;
+    if (!met) met = meet(other_side, from[i], here, to);
     if (!met) continue;
-    out[i] = met_at(face_, evaluator, from[i], p, uv(*met, to));
+    out[i] = met_at(face_, other_side, from[i], p, uv(*met, to));
   }
   return out;
 }

@@ -397,7 +397,8 @@ std::optional<Point2> PlaneFamily::meet(geom::SurfaceEvaluator& evaluator, const
 
 std::vector<PathFamily::Abreast> PlaneFamily::abreast(const std::vector<CcPoint>& from, double w,
                                                       double w_to) const {
-  auto evaluator = face_.evaluator();
+  // One for either path: each stays in a span for several contacts.
+  auto evaluator = face_.evaluator(), other_side = face_.evaluator();
   const double to = levels_.at(w_to), apart = to - levels_.at(w);
   std::vector<PathFamily::Abreast> out(from.size());
   Point2 here{us_[us_.size() / 2], vs_[vs_.size() / 2]};
@@ -408,8 +409,8 @@ std::vector<PathFamily::Abreast> PlaneFamily::abreast(const std::vector<CcPoint>
     const SurfaceDerivatives d = evaluator.derivatives(p->x, p->y);
     const double rise = dot(from[i].t(), up_);
     const Vec2 step = PathFace::coefficients(d, (apart / std::max(rise, kLeastSlope)) * from[i].t());
-    const auto q = meet(evaluator, from[i], face_.wrapped(here + step), to);
-    if (q) out[i] = met_at(face_, evaluator, from[i], *p, *q);
+    const auto q = meet(other_side, from[i], face_.wrapped(here + step), to);
+    if (q) out[i] = met_at(face_, other_side, from[i], *p, *q);
   }
   return out;
 }

@@ -25,17 +25,35 @@ class Relaxation {
 
   /// Some witness that forbids the angles.
   std::optional<std::size_t> blocked(const Angles& angles) const;
-  bool blocks(std::size_t witness, const Angles& angles) const;
-  /// The smallest tilt from `from` on that no witness forbids; above `to`: none up to there. Never too great.
-  double first_tilt(double beta, double from, double to) const;
+
+  /// Up to where the witnesses alone block a yaw from `from` on: no smaller tilt is allowed. covered: all of
+  /// [from, to]. A lower bound within kTiltStep of the best that the witnesses give.
+  struct Reach {
+    double alpha = 0;
+    bool covered = false;
+  };
+  Reach blocked_from(double beta, double from, double to) const;
+  /// The newest witness alone at one pose.
+  bool newest_blocks(const Angles& angles) const;
+  static constexpr double kTiltStep = 1e-4;  ///< rad
 
  private:
+  /// Witnesses after each other, from the centre of the corner's tube at the contact, in (f, t, n).
   struct Place {
-    double f, t, n;  ///< from the centre of the corner's tube at the contact
-    double radius2, radius, from, to, grow, grow2;
+    double f, t, n, radius, radius2, from, to, grow;
+    /// What it blocks at a yaw is one interval of tilts: the piece stands between the tool's axis and the
+    /// line about which the tilt turns (docs/cspace.md).
+    bool simple;
   };
-  bool inside(const Place& place, double xd, double y2, double sa, double ca) const;
-  std::optional<std::size_t> blocked_at(double beta, double alpha) const;
+  /// The same at one yaw: along the tilt's plane, across it squared.
+  struct AtYaw {
+    double d, e2;
+  };
+  AtYaw at_yaw(const Place& place, double sb, double cb) const {
+    const double e = place.t * cb - place.f * sb;
+    return {place.f * cb + place.t * sb, e * e};
+  }
+  bool inside(const Place& place, const AtYaw& q, double sa, double ca) const;
 
   const Scene* scene_;
   const CcPoint* at_;
@@ -43,7 +61,8 @@ class Relaxation {
   std::vector<Witness> witnesses_;
   std::vector<Place> places_;
   mutable std::vector<std::size_t> uses_;
-  mutable std::size_t hot_ = 0;
+  mutable std::vector<AtYaw> yaw_;
+  mutable std::vector<std::size_t> holding_;
 };
 
 }  // namespace burin::orient

@@ -46,6 +46,13 @@ struct Frame {
     const Vec3 v = q - p;
     return {dot(v, ex), dot(v, ey), dot(v, u)};
   }
+  Corners at(const std::array<Point3, 3>& t) const { return {at(t[0]), at(t[1]), at(t[2])}; }
+};
+/// A pose to be asked about, and for the order: across from the line about which the tool turns to its axis.
+struct Aim {
+  Frame frame;
+  Vec3 lever;
+  double arm = 1, corner = 0, alpha = 0;
 };
 
 }  // namespace
@@ -65,15 +72,20 @@ struct Scene::State {
     return tree.packets[place / 4].corners(static_cast<int>(place % 4));
   }
   bool blocks(const Blocker& b, const Frame& frame) const {
-    const auto c = corners(b.triangle);
-    return meets({frame.at(c[0]), frame.at(c[1]), frame.at(c[2])}, pieces[b.piece]);
+    return meets(frame.at(corners(b.triangle)), pieces[b.piece]);
   }
   void add_queries();
+  detail::SceneQuery query(std::size_t batch, const Aim& aim) const;
   template <class Met>
-  bool walk(std::size_t batch, unsigned mask, Frame& frame, const Met& met) const;
+  bool look_at(const detail::ScenePacket& packet, std::size_t batch, unsigned mask, Aim& aim,
+               const Met& met) const;
   template <class Met>
-  bool ask(std::size_t count, Frame& frame, Memory& memory, const Met& met) const;
-  std::optional<Blocker> blocker(const cl::Pose& pose, std::size_t count, Memory& memory) const;
+  bool walk(std::size_t batch, unsigned mask, Aim& aim, const Met& met) const;
+  template <class Met>
+  bool climb(std::size_t batch, unsigned mask, Aim& aim, const Met& met) const;
+  template <class Met>
+  bool climb_all(Aim& aim, const Met& met) const;
+  std::optional<Blocker> blocker(const Frame& frame, std::size_t count, Memory& memory) const;
 };
 
 Scene::Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPiece> body)
@@ -81,6 +93,15 @@ Scene::Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPi
   State& s = *state_;
   s.mill = mill;
   s.body = std::move(body);
+  // Blocker numbers pieces in a byte: what is beyond (no tool has that) becomes one that holds them all.
+  constexpr std::size_t kMost = 255;
+  while (s.body.size() > kMost) {
+    const BodyPiece top = s.body.back();
+    s.body.pop_back();
+    BodyPiece& p = s.body.back();
+    p = {std::max(p.radius, top.radius), std::min(p.from, top.from), std::max(p.to, top.to),
+         std::max(p.grow, top.grow), p.cause};
+  }
   s.tree = detail::build_scene_tree(mesh);
   s.triangles = mesh.triangles.size();
   s.kernels = &detail::scene_kernels_avx2();
@@ -135,144 +156,212 @@ void remember(const Blocker& b, Scene::Memory& memory) {
 
 }  // namespace
 
-/// All triangles that may meet the pieces of one batch (bits of `mask`), the likeliest first. met(triangle,
-/// corners, piece) is told of those that do; it may move the frame (the walk goes on with it), and ends the
-/// walk by true.
+detail::SceneQuery Scene::State::query(std::size_t batch, const Aim& aim) const {
+  detail::SceneQuery q = queries[batch];
+  const auto put = [](float(&to)[3], const Vec3& v) {
+    to[0] = static_cast<float>(v.x);
+    to[1] = static_cast<float>(v.y);
+    to[2] = static_cast<float>(v.z);
+  };
+  q.tip[0] = aim.frame.p.x;
+  q.tip[1] = aim.frame.p.y;
+  q.tip[2] = aim.frame.p.z;
+  put(q.axis, aim.frame.u);
+  put(q.lever, aim.lever);
+  q.arm = static_cast<float>(aim.arm);
+  q.corner = static_cast<float>(aim.corner);
+  return q;
+}
+
+/// met(blocker, aim) is told of the triangles of a packet that meet pieces of the batch (bits of `mask`).
 template <class Met>
-bool Scene::State::walk(std::size_t batch, unsigned mask, Frame& frame, const Met& met) const {
+bool Scene::State::look_at(const detail::ScenePacket& packet, std::size_t batch, unsigned mask, Aim& aim,
+                           const Met& met) const {
+  for (int lane = 0; lane < 4; ++lane) {
+    if (lane > 0 && packet.triangle[lane] == packet.triangle[lane - 1]) break;
+    const auto c = packet.corners(lane);
+    Corners t = aim.frame.at(c);
+    for (unsigned left = mask; left != 0; left &= left - 1) {
+      const std::size_t piece = batch * detail::kScenePieces + static_cast<std::size_t>(__builtin_ctz(left));
+      if (!meets(t, pieces[piece])) continue;
+      if (met(Blocker{packet.triangle[lane], static_cast<std::uint8_t>(piece)}, aim)) return true;
+      t = aim.frame.at(c);
+    }
+  }
+  return false;
+}
+
+/// Whether some triangle meets a piece of the batch (bits of `mask`), the deepest boxes first: exactly.
+template <class Met>
+bool Scene::State::walk(std::size_t batch, unsigned mask, Aim& aim, const Met& met) const {
   struct Task {
     int child;
     unsigned pieces;
-    float outside;
+    float last;
   };
   std::array<Task, detail::kSceneStack> todo;
-  detail::SceneQuery query = queries[batch];
-  const auto aim = [&] {
-    query.tip[0] = frame.p.x, query.tip[1] = frame.p.y, query.tip[2] = frame.p.z;
-    query.axis[0] = static_cast<float>(frame.u.x);
-    query.axis[1] = static_cast<float>(frame.u.y);
-    query.axis[2] = static_cast<float>(frame.u.z);
-  };
-  aim();
+  const detail::SceneQuery q = query(batch, aim);
   std::size_t n = 0;
   todo[n++] = {0, mask, 0};
   while (n > 0) {
     const Task task = todo[--n];
-    if (task.child >= 0) {
-      const detail::SceneNode& node = tree.nodes[static_cast<std::size_t>(task.child)];
-      detail::SceneHits hits;
-      kernels->boxes(node, query, task.pieces, hits);
-      unsigned any = 0;
-      for (int k = 0; k < query.count; ++k) any |= hits.hit[k];
-      const std::size_t base = n;
-      while (any != 0) {
-        const int lane = __builtin_ctz(any);
-        any &= any - 1;
-        Task t{node.child[lane], 0, hits.outside[lane]};
-        for (int k = 0; k < query.count; ++k) t.pieces |= (hits.hit[k] >> lane & 1U) << k;
-        std::size_t i = n++;
-        for (; i > base && todo[i - 1].outside < t.outside; --i) todo[i] = todo[i - 1];
-        todo[i] = t;
-      }
+    if (task.child < 0) {
+      if (look_at(tree.packets[static_cast<std::size_t>(~task.child)], batch, task.pieces, aim, met))
+        return true;
       continue;
     }
-    const detail::ScenePacket& packet = tree.packets[static_cast<std::size_t>(~task.child)];
-    for (int lane = 0; lane < 4; ++lane) {
-      if (lane > 0 && packet.triangle[lane] == packet.triangle[lane - 1]) break;
-      const auto c = packet.corners(lane);
-      Corners t{frame.at(c[0]), frame.at(c[1]), frame.at(c[2])};
-      for (unsigned left = task.pieces; left != 0; left &= left - 1) {
-        const std::size_t piece =
-            batch * detail::kScenePieces + static_cast<std::size_t>(__builtin_ctz(left));
-        if (!meets(t, pieces[piece])) continue;
-        if (met(Blocker{packet.triangle[lane], static_cast<std::uint8_t>(piece)}, frame)) return true;
-        t = {frame.at(c[0]), frame.at(c[1]), frame.at(c[2])};
-        aim();
-      }
+    const detail::SceneNode& node = tree.nodes[static_cast<std::size_t>(task.child)];
+    detail::SceneHits hits;
+    kernels->boxes(node, q, task.pieces, hits);
+    unsigned any = 0;
+    for (int k = 0; k < q.count; ++k) any |= hits.hit[k];
+    const std::size_t base = n;
+    while (any != 0) {
+      const int lane = __builtin_ctz(any);
+      any &= any - 1;
+      Task t{node.child[lane], 0, hits.last[lane]};
+      for (int k = 0; k < q.count; ++k) t.pieces |= (hits.hit[k] >> lane & 1U) << k;
+      std::size_t i = n++;
+      for (; i > base && todo[i - 1].last > t.last; --i) todo[i] = todo[i - 1];
+      todo[i] = t;
     }
   }
   return false;
 }
 
-/// Memory first, then the tree, for the first `count` pieces.
+/// Looks where the tool leaves last, by estimates: `met` moves the aim. What it passes over a walk will find.
 template <class Met>
-bool Scene::State::ask(std::size_t count, Frame& frame, Memory& memory, const Met& met) const {
-  ++memory.tests;
-  const Memory before = memory;
-  for (int i = 0; i < before.count; ++i) {
-    const Blocker b = before.last[static_cast<std::size_t>(i)];
-    if (b.triangle < triangles && tree.place[b.triangle] != detail::kNoPlace && b.piece < count &&
-        blocks(b, frame) && met(b, frame))
-      return true;
-  }
-  if (tree.nodes.empty()) return false;
-  for (std::size_t batch = 0; batch * detail::kScenePieces < count; ++batch) {
-    const std::size_t n = std::min<std::size_t>(count - batch * detail::kScenePieces, detail::kScenePieces);
-    if (walk(batch, (1U << n) - 1, frame, met)) return true;
+bool Scene::State::climb(std::size_t batch, unsigned mask, Aim& aim, const Met& met) const {
+  struct Task {
+    int child;
+    unsigned pieces;
+    double last;
+    bool operator<(const Task& o) const { return last < o.last; }
+  };
+  // The estimates need not be kept all.
+  constexpr std::size_t kKept = 192;
+  std::array<Task, kKept> todo;
+  std::size_t n = 0;
+  todo[n++] = {0, mask, aim.alpha};
+  detail::SceneQuery q = query(batch, aim);
+  while (n > 0 && todo[0].last >= aim.alpha) {
+    std::pop_heap(todo.begin(), todo.begin() + n);
+    const Task task = todo[--n];
+    if (task.child < 0) {
+      const double before = aim.alpha;
+      if (look_at(tree.packets[static_cast<std::size_t>(~task.child)], batch, task.pieces, aim, met))
+        return true;
+      if (aim.alpha != before) q = query(batch, aim);
+      continue;
+    }
+    const detail::SceneNode& node = tree.nodes[static_cast<std::size_t>(task.child)];
+    detail::SceneHits hits;
+    kernels->turning(node, q, task.pieces, hits);
+    unsigned any = 0;
+    for (int k = 0; k < q.count; ++k) any |= hits.hit[k];
+    for (; any != 0 && n < kKept; any &= any - 1) {
+      const int lane = __builtin_ctz(any);
+      Task t{node.child[lane], 0, aim.alpha + static_cast<double>(hits.last[lane])};
+      for (int k = 0; k < q.count; ++k) t.pieces |= (hits.hit[k] >> lane & 1U) << k;
+      todo[n++] = t;
+      std::push_heap(todo.begin(), todo.begin() + n);
+    }
   }
   return false;
 }
 
-std::optional<Blocker> Scene::State::blocker(const cl::Pose& pose, std::size_t count, Memory& memory) const {
-  std::optional<Blocker> out;
-  Frame frame(pose);
-  ask(count, frame, memory, [&](const Blocker& b, Frame&) {
-    out = b;
+/// climb() with all batches.
+template <class Met>
+bool Scene::State::climb_all(Aim& aim, const Met& met) const {
+  for (std::size_t batch = 0; batch < queries.size() && !tree.nodes.empty(); ++batch)
+    if (climb(batch, (1U << static_cast<unsigned>(queries[batch].count)) - 1, aim, met)) return true;
+  return false;
+}
+
+/// A blocker among the first `count` pieces: the memory first, then the tree.
+std::optional<Blocker> Scene::State::blocker(const Frame& frame, std::size_t count, Memory& memory) const {
+  ++memory.tests;
+  for (int i = 0; i < memory.count; ++i) {
+    const Blocker b = memory.last[static_cast<std::size_t>(i)];
+    if (b.triangle >= triangles || tree.place[b.triangle] == detail::kNoPlace || b.piece >= count ||
+        !blocks(b, frame))
+      continue;
     remember(b, memory);
+    return b;
+  }
+  std::optional<Blocker> out;
+  Aim aim{frame, {}};
+  const auto met = [&](const Blocker& b, Aim&) {
+    out = b;
     return true;
-  });
+  };
+  for (std::size_t batch = 0; batch * detail::kScenePieces < count && !tree.nodes.empty() && !out; ++batch) {
+    const std::size_t n = std::min<std::size_t>(count - batch * detail::kScenePieces, detail::kScenePieces);
+    walk(batch, (1U << n) - 1, aim, met);
+  }
+  if (out) remember(*out, memory);
   return out;
 }
 
 std::optional<Blocker> Scene::blocker(const cl::Pose& pose, Memory& memory) const {
-  return state_->blocker(pose, state_->pieces.size(), memory);
+  return state_->blocker(Frame(pose), state_->pieces.size(), memory);
 }
 
 Cause Scene::cause(const cl::Pose& pose, Memory& memory) const {
   const State& s = *state_;
-  const auto first = s.blocker(pose, s.pieces.size(), memory);
+  const Frame frame(pose);
+  const auto first = s.blocker(frame, s.pieces.size(), memory);
   if (!first) return Cause::none;
   if (s.body[first->piece].cause == Cause::gouge) return Cause::gouge;
-  return s.gouging > 0 && s.blocker(pose, s.gouging, memory) ? Cause::gouge : s.body[first->piece].cause;
+  return s.gouging > 0 && s.blocker(frame, s.gouging, memory) ? Cause::gouge : s.body[first->piece].cause;
 }
 
 Scene::FirstFree Scene::first_free(const CcPoint& at, double beta, double from, double to,
                                    Memory& memory) const {
   const State& s = *state_;
   const Turn turn(at, beta, s.mill);
-  const auto frame_at = [&](double a) { return Frame(pose(at, {a, beta}, s.mill)); };
   FirstFree out;
-  double alpha = from, blocked = from, stall = kGrid;
+  double blocked = from, stall = kGrid;
   std::optional<Blocker> last;
   bool over = false;
-  // The tilt only grows: each blocker moves it to the end of what that triangle blocks.
-  const auto met = [&](const Blocker& b, Frame& frame) {
-    do {
-      const auto c = s.corners(b.triangle);
-      const auto left =
-          turn.until({turn.place(c[0]), turn.place(c[1]), turn.place(c[2])}, s.pieces[b.piece], alpha, to);
-      last = b;
-      out.witness = Witness{turn.point(left.last), b.piece};
-      blocked = alpha;
-      if (alpha >= to) return over = true;
-      stall = left.alpha > alpha ? kGrid : std::min(2 * stall, kLeastGap);
-      alpha = std::min(std::max(grid_above(left.alpha), grid_above(alpha + 0.5 * stall)), to);
-      frame = frame_at(alpha);
-    } while (s.blocks(b, frame));
+  const auto aim_at = [&](double a) {
+    const Turn::Tilt tilt(a);
+    return Aim{Frame(pose(at, {a, beta}, s.mill)), turn.across(tilt), turn.arm(), turn.corner(), a};
+  };
+  Aim aim = aim_at(from);
+  // The tilt only grows: each blocker moves it to where that triangle ends to block.
+  const auto move = [&](const Blocker& b, double coarse) {
+    const auto c = s.corners(b.triangle);
+    const auto left = turn.until({turn.place(c[0]), turn.place(c[1]), turn.place(c[2])}, s.pieces[b.piece],
+                                 aim.alpha, to, coarse);
+    last = b;
+    out.witness = Witness{turn.point(left.last), b.piece};
+    blocked = aim.alpha;
+    if (aim.alpha >= to) return over = true;
+    stall = left.alpha > aim.alpha ? kGrid : std::min(2 * stall, kLeastGap);
+    aim.alpha = std::min(std::max(grid_above(left.alpha), grid_above(aim.alpha + 0.5 * stall)), to);
+    const Turn::Tilt tilt(aim.alpha);
+    aim.frame = Frame(turn.pose(tilt));
+    aim.lever = turn.across(tilt);
     return false;
   };
-  for (double before = -1; alpha != before && !over;) {
-    before = alpha;
-    Frame frame = frame_at(alpha);
-    s.ask(s.pieces.size(), frame, memory, met);
+  // On the way roughly: the next triangle may do better. What is left when no other does, exactly.
+  constexpr double kRough = 0.03;
+  const auto met = [&](const Blocker& b, Aim&) { return move(b, kRough); };
+  while (!over) {
+    const auto b = s.blocker(aim.frame, s.pieces.size(), memory);
+    if (!b || move(*b, kRough) || s.climb_all(aim, met)) break;
+    while (!over && s.blocks(*last, aim.frame)) move(*last, 0);
+    aim = aim_at(aim.alpha);
   }
+  double alpha = aim.alpha;
   if (last) remember(*last, memory);
   out.found = !over;
   // The same answer by any way: the place of the grid before it is blocked.
   while (out.found && last && alpha - blocked > 1.5 * kGrid) {
     const double before = grid_above(alpha - 1.25 * kGrid);
-    if (!(before > blocked && before < alpha) || s.blocks(*last, frame_at(before))) break;
-    if (s.blocker(pose(at, {before, beta}, s.mill), s.pieces.size(), memory)) break;
+    if (!(before > blocked && before < alpha) || s.blocks(*last, aim_at(before).frame)) break;
+    if (s.blocker(aim_at(before).frame, s.pieces.size(), memory)) break;
     alpha = before;
   }
   out.alpha = alpha;

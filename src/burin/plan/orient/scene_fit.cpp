@@ -13,9 +13,6 @@ using geom::Vec3;
 
 namespace {
 
-/// Directions are chosen from this many triangles at most; extents are those of all.
-constexpr std::size_t kSample = 256;
-
 struct Symmetric {
   double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
   void add(const Vec3& v) {
@@ -90,7 +87,7 @@ std::array<Vec3, 3> directions(const std::vector<Vec3>& corners, const Vec3& nor
   };
   if (norm(normal) > 0.5 && width(normal) < width(n)) n = normal;
   const Vec3 p = across(n), q = cross(n, p);
-  constexpr int kTurns = 8;
+  constexpr int kTurns = 4;
   Vec3 best_a = p, best_b = q;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kTurns; ++i) {
@@ -108,16 +105,19 @@ std::array<Vec3, 3> directions(const std::vector<Vec3>& corners, const Vec3& nor
 
 }  // namespace
 
-FittedBox fit_box(std::size_t count, const TriangleAt& triangle) {
-  const Point3 ref = triangle(0)[0];
+FittedBox fit_box(const geom::Mesh& mesh, std::span<const std::uint32_t> triangles, std::size_t sample) {
+  const auto corner = [&](std::uint32_t triangle, std::size_t i) -> const Point3& {
+    return mesh.vertices[mesh.triangles[triangle][i]];
+  };
+  const Point3 ref = corner(triangles[0], 0);
   std::vector<Vec3> corners;
-  corners.reserve(3 * std::min(count, kSample));
+  const std::size_t step = (triangles.size() + sample - 1) / sample;
+  corners.reserve(3 * (triangles.size() / step + 1));
   Vec3 normal;
-  const std::size_t step = (count + kSample - 1) / kSample;
-  for (std::size_t i = 0; i < count; i += step) {
-    const auto t = triangle(i);
-    for (const Point3& q : t) corners.push_back(q - ref);
-    normal = normal + cross(t[1] - t[0], t[2] - t[0]);
+  for (std::size_t i = 0; i < triangles.size(); i += step) {
+    const Point3 &p = corner(triangles[i], 0), &q = corner(triangles[i], 1), &r = corner(triangles[i], 2);
+    for (const Point3& at : {p, q, r}) corners.push_back(at - ref);
+    normal = normal + cross(q - p, r - p);
   }
   FittedBox box;
   box.axis = directions(corners, geom::unit(normal));
@@ -128,8 +128,8 @@ FittedBox fit_box(std::size_t count, const TriangleAt& triangle) {
   if (step == 1) {
     for (const Vec3& v : corners) add(v);
   } else {
-    for (std::size_t i = 0; i < count; ++i)
-      for (const Point3& q : triangle(i)) add(q - ref);
+    for (const std::uint32_t t : triangles)
+      for (std::size_t i = 0; i < 3; ++i) add(corner(t, i) - ref);
   }
   box.middle = ref;
   for (std::size_t k = 0; k < 3; ++k) {

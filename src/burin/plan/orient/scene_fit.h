@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstddef>
-#include <functional>
+#include <cstdint>
+#include <span>
 
+#include "burin/geom/mesh/mesh.h"
 #include "burin/geom/vec.h"
 #include "burin/plan/orient/scene_kernels.h"
 
@@ -18,8 +20,8 @@ struct FittedBox {
   std::array<double, 3> half{};
 };
 
-using TriangleAt = std::function<std::array<geom::Point3, 3>(std::size_t)>;
-FittedBox fit_box(std::size_t count, const TriangleAt& triangle);
+/// Of at least one triangle. Directions are chosen from `sample` of them at most; extents are those of all.
+FittedBox fit_box(const geom::Mesh& mesh, std::span<const std::uint32_t> triangles, std::size_t sample);
 
 /// Writes the box into a lane, rounded outwards.
 void put_box(const FittedBox& box, const geom::Point3& origin, int lane, SceneNode& node);

@@ -24,18 +24,24 @@ struct SceneQuery {
   double tip[3];
   float axis[3];
   float size;  ///< no place of the pieces is further from the tip
+  /// How the tool is about to turn, for the order only: unit vector from the line about which it turns to the
+  /// axis, across it, how long, and the height of the line.
+  float lever[3], arm, corner;
   int count;
   float middle[kScenePieces], half[kScenePieces], radius[kScenePieces], grow[kScenePieces];
 };
 
 struct alignas(32) SceneHits {
-  float outside[8];                 ///< the middle of the box: how far outside of the nearest piece, about
+  float last[8];                    ///< the order to look at them: greatest first
   unsigned char hit[kScenePieces];  ///< bit i: box i may meet the piece; where not, it does not
 };
 
 struct SceneKernels {
   /// Only pieces whose bit is set in `pieces` are looked at.
+  /// `last`: how deep the middle of the box is.
   void (*boxes)(const SceneNode&, const SceneQuery&, unsigned pieces, SceneHits&);
+  /// `last`: about the tilt (rad, from now) at which the box will have left the pieces that it may meet.
+  void (*turning)(const SceneNode&, const SceneQuery&, unsigned pieces, SceneHits&);
 };
 const SceneKernels& scene_kernels_any();
 /// The same as scene_kernels_any() when the build or the processor has no AVX2.

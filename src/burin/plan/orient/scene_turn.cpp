@@ -95,17 +95,21 @@ Place Turn::place(const geom::Point3& q) const {
 geom::Point3 Turn::point(const Place& p) const {
   return pivot_ + p.n * n_ + p.d * d_ + p.e * e_;
 }
-Local Turn::at(const Place& p, double alpha) const {
-  const double s = std::sin(alpha), c = std::cos(alpha);
-  return {p.n * s - p.d * c - arm_, p.e, p.n * c + p.d * s + corner_};
+Turn::Tilt::Tilt(double alpha) : s(std::sin(alpha)), c(std::cos(alpha)) {}
+Local Turn::at(const Place& p, const Tilt& tilt) const {
+  return {p.n * tilt.s - p.d * tilt.c - arm_, p.e, p.n * tilt.c + p.d * tilt.s + corner_};
 }
-Place Turn::back(const Local& q, double alpha) const {
-  const double s = std::sin(alpha), c = std::cos(alpha), x = q.x + arm_, h = q.h - corner_;
-  return {x * s + h * c, h * s - x * c, q.y};
+Place Turn::back(const Local& q, const Tilt& tilt) const {
+  const double x = q.x + arm_, h = q.h - corner_;
+  return {x * tilt.s + h * tilt.c, h * tilt.s - x * tilt.c, q.y};
+}
+cl::Pose Turn::pose(const Tilt& tilt) const {
+  const geom::Vec3 u = tilt.c * n_ + tilt.s * d_;
+  return {pivot_ + arm_ * across(tilt) - corner_ * u, u};
 }
 
 double Turn::until(const Place& p, const Piece& piece, double alpha, double to) const {
-  if (!(alpha < to) || excess(at(p, alpha), piece) >= 0) return alpha;
+  if (!(alpha < to) || excess(at(p, Tilt(alpha)), piece) >= 0) return alpha;
   // n = rho cos(phi), d = rho sin(phi): sin(a) n - cos(a) d = rho sin(a - phi).
   const double rho = std::hypot(p.n, p.d), phi = std::atan2(p.d, p.n);
   const double end = stays({rho, p.e, arm_, corner_}, piece, alpha - phi, to - phi) + phi;
@@ -113,49 +117,69 @@ double Turn::until(const Place& p, const Piece& piece, double alpha, double to) 
 }
 
 double Turn::since(const Place& p, const Piece& piece, double alpha, double from) const {
-  if (!(alpha > from) || excess(at(p, alpha), piece) >= 0) return alpha;
+  if (!(alpha > from) || excess(at(p, Tilt(alpha)), piece) >= 0) return alpha;
   // Mirrored: a -> -a turns x = rho sin(a - phi) - arm into -(rho sin(-a + phi) + arm).
   const double rho = std::hypot(p.n, p.d), phi = std::atan2(p.d, p.n);
   const double start = phi - stays({rho, p.e, -arm_, corner_}, piece, phi - alpha, phi - from);
   return start < from + kSame ? from : std::min(start, alpha);
 }
 
-Turn::Left Turn::until(const std::array<Place, 3>& t, const Piece& piece, double alpha, double to) const {
-  constexpr int kSteps = 64;
-  const auto corners = [&](double a) { return Corners{at(t[0], a), at(t[1], a), at(t[2], a)}; };
+Turn::Left Turn::at_least(const std::array<Place, 3>& t, const Piece& piece, double alpha, double to) const {
+  const Tilt tilt(alpha);
+  const Deepest d = deepest({at(t[0], tilt), at(t[1], tilt), at(t[2], tilt)}, piece);
   Left left{alpha, t[0]};
+  if (d.value >= 0) return left;
+  left.last = back(d.at, tilt);
+  left.alpha = until(left.last, piece, alpha, to);
+  for (const Place& p : t) {
+    const double end = until(p, piece, alpha, to);
+    if (end > left.alpha) left = {end, p};
+  }
+  return left;
+}
+
+Turn::Left Turn::until(const std::array<Place, 3>& t, const Piece& piece, double alpha, double to,
+                       double coarse) const {
+  constexpr int kSteps = 64;
+  Left left = at_least(t, piece, alpha, to);
   const auto offer = [&](const Place& p, double a) {
     const double end = until(p, piece, a, to);
     if (end > left.alpha) left = {end, p};
   };
+  // Where the line through the last two values says that it ends, a little before: taken up to there when a
+  // place found there has blocked all the way.
+  constexpr std::array<double, 3> kShort{2e-3, 0.05, 0.3};
+  constexpr double kNear = 5e-11;
   double before = alpha, before_value = 0, now = alpha, free_at = kNever;
-  bool two = false;
   for (int i = 0; i < kSteps && now <= to; ++i) {
-    const Deepest d = deepest(corners(now), piece);
+    const Tilt tilt(now);
+    const Deepest d = deepest({at(t[0], tilt), at(t[1], tilt), at(t[2], tilt)}, piece);
     if (d.value >= 0) break;
-    const Place deep = back(d.at, now);
-    if (i == 0) left = {alpha, deep};
-    offer(deep, now);
-    for (const Place& p : t) offer(p, now);
-    // Where the line through the last two values says that it ends: taken up to there when a place found
-    // there has blocked all the way.
-    if (two && d.value > before_value && left.alpha < to) {
-      double guess = now + d.value * (now - before) / (before_value - d.value);
-      if (guess >= free_at) guess = 0.5 * (left.alpha + free_at);
-      guess = std::min(guess, to);
-      if (guess > left.alpha) {
-        const Deepest ahead = deepest(corners(guess), piece);
+    if (i > 0) offer(back(d.at, tilt), now);
+    double known = now, known_value = d.value;
+    if (i > 0 && d.value > before_value && left.alpha < to) {
+      const double end = std::min(now + d.value * (now - before) / (before_value - d.value), free_at);
+      for (const double share : kShort) {
+        const double guess = std::min(end - share * (end - left.alpha), to);
+        if (!(guess > left.alpha + kNear)) break;
+        const Tilt there(guess);
+        const Deepest ahead = deepest({at(t[0], there), at(t[1], there), at(t[2], there)}, piece);
         if (ahead.value >= 0) {
           free_at = guess;
-        } else if (const Place p = back(ahead.at, guess); since(p, piece, guess, now) <= now) {
+        } else if (const Place p = back(ahead.at, there); since(p, piece, guess, left.alpha) <= left.alpha) {
           offer(p, guess);
+          known = guess;
+          known_value = ahead.value;
+          break;
         }
       }
     }
-    two = true;
-    before = now;
-    before_value = d.value;
-    if (left.alpha >= to || left.alpha <= now) break;
+    before = known;
+    before_value = known_value;
+    const double gained = left.alpha - now;
+    if (left.alpha >= to || gained <= std::max(kNear, coarse * (left.alpha - alpha)) ||
+        free_at - left.alpha < kNear)
+      break;
     now = left.alpha + kSame;
   }
   return left;

@@ -19,8 +19,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// 1 / tan(w / 2) that stands for w = 0: its square is finite, its inverse below any rounding.
 constexpr double kAtContact = 1e100;
-/// Of an angle that is looked for: the width that follows is as exact.
-constexpr double kAngleShare = 1e-11;
+/// Last step of an angle that is looked for (the error is its square, or itself where halving finds it).
+constexpr double kAngleShare = 1e-9;
 constexpr int kMaxSteps = 60;
 
 double square(double x) {
@@ -335,7 +335,8 @@ Strip ball_strip(const CcPoint& at, double ball_radius, double scallop_mm) {
 }
 
 double StripGoal::value(const CcPoint& at, const Angles& angles) const {
-  return strip_at(at, angles, *mill_, scallop_mm_).width();
+  const Strip strip = strip_at(at, angles, *mill_, scallop_mm_);
+  return 2 * std::min(strip.left, strip.right);
 }
 
 }  // namespace burin::orient

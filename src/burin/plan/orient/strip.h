@@ -18,7 +18,8 @@ Strip strip_at(const CcPoint& at, const Angles& angles, const model::Mill& mill,
 /// Of a ball of the radius (symmetric); 0 where the ball does not fit (k_tt >= 1 / radius).
 Strip ball_strip(const CcPoint& at, double ball_radius, double scallop_mm);
 
-/// strip_at(...).width(): objective = "strip".
+/// objective = "strip": twice the narrower side. The neighbour on either side begins where that ends; the sum
+/// of both sides would let points of a path lean to different sides, which leaves a gap beside each.
 class StripGoal final : public Goal {
  public:
   StripGoal(const model::Mill& mill, double scallop_mm) : mill_(&mill), scallop_mm_(scallop_mm) {}

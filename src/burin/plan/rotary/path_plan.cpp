@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "burin/geom/vec.h"
-#include "burin/plan/rotary/parallel.h"
 
 namespace burin::rotary {
 namespace {
@@ -212,8 +211,9 @@ class PathPlanner {
     for (std::size_t i = 1; i < nodes_.size(); ++i)
       if (both_open(i) && !broken_[i] && !nodes_[i].cut) steps.push_back(i);
     std::vector<Proof> proofs(steps.size());
-    for_each_index(steps.size(),
-                   [&](std::size_t k) { proofs[k] = prove(nodes_[steps[k] - 1], nodes_[steps[k]]); });
+    parallel_for(steps.size(), shared_.threads(), [&](std::size_t k, std::size_t) {
+      proofs[k] = prove(nodes_[steps[k] - 1], nodes_[steps[k]]);
+    });
     for (std::size_t k = 0; k < steps.size(); ++k) {
       nodes_[steps[k]].cut = proofs[k].clear;
       if (!proofs[k].clear) continue;
@@ -245,8 +245,9 @@ class PathPlanner {
     }
     nodes_ = std::move(next);
     if (added.empty()) return false;
-    for_each_index(added.size(),
-                   [&](std::size_t k) { nodes_[added[k]] = node_at(shared_, line_, nodes_[added[k]].s); });
+    parallel_for(added.size(), shared_.threads(), [&](std::size_t k, std::size_t) {
+      nodes_[added[k]] = node_at(shared_, line_, nodes_[added[k]].s);
+    });
     set_free(added, round);
     return true;
   }
@@ -364,10 +365,10 @@ PathBase swept_along(const PathBase& base, double turn, double dx, double dw) {
   return out;
 }
 
-void add_nodes(const Shared& shared, PathBase& base) {
+void add_nodes(const Shared& shared, PathBase& base, unsigned threads) {
   const CenterLine line(base.dense, shared.tool.radius, line_accuracy(shared));
   base.nodes.resize(base.ssi.at.size());
-  for_each_index(base.nodes.size(), [&](std::size_t i) {
+  parallel_for(base.nodes.size(), threads, [&](std::size_t i, std::size_t) {
     Node node;
     node.s = line.length_of(base.ssi.at[i]);
     node.place = base.ssi.points[i];

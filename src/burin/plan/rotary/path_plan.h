@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "burin/base/parallel.h"
 #include "burin/geom/mesh/mesh_index.h"
 #include "burin/model/tool.h"
 #include "burin/plan/rotary/axis.h"
@@ -27,6 +28,8 @@ struct Shared {
   const ReachIndex& lift;
   const SweptDistance* design = nullptr;  ///< of a swept part
   const SectionAxis* section = nullptr;   ///< with Tai::section
+
+  unsigned threads() const { return thread_count(options.threads); }
 
   /// Of moves that cut: everything within the tolerance of the part itself.
   MotionOptions cutting() const {
@@ -105,7 +108,7 @@ PathBase place_path(const Shared& shared, const ContactPath& path);
 /// The same places turned about X, moved along X by dx and in w by dw (Suh & Lee, 3.3 A).
 PathBase swept_along(const PathBase& base, double turn, double dx, double dw);
 /// The CL points and their reachable angles, which depend on the whole part.
-void add_nodes(const Shared& shared, PathBase& base);
+void add_nodes(const Shared& shared, PathBase& base, unsigned threads);
 
 /// `start`: where the axis and the ball stood before.
 PathPlan plan_path(const Shared& shared, const ContactPath& path, PathBase base, const AxisPose& start);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -11,7 +9,6 @@
 #include "burin/base/text.h"
 #include "burin/geom/vec.h"
 #include "burin/plan/rotary/links.h"
-#include "burin/plan/rotary/parallel.h"
 #include "burin/plan/rotary/path_plan.h"
 #include "burin/plan/rotary/rotary.h"
 #include "burin/plan/rotary/uncut.h"
@@ -149,10 +146,12 @@ class Planner {
     for (std::size_t i = 0; i < paths.size(); ++i) {
       if (i % kBatch == 0) {
         bases.assign(std::min(kBatch, paths.size() - i), {});
-        for_each_index(bases.size(), [&](std::size_t k) {
+        // Paths side by side, or else the points of each.
+        const unsigned threads = shared.threads(), inner = bases.size() < threads ? threads : 1;
+        parallel_for(bases.size(), threads, [&](std::size_t k, std::size_t) {
           const ContactPath& own = paths[i + k];
           bases[k] = first.holds_for(own) ? first.at(own) : place_path(shared, own);
-          add_nodes(shared, bases[k]);
+          add_nodes(shared, bases[k], inner);
         });
       }
       PathPlan path = plan_path(shared, paths[i], std::move(bases[i % kBatch]), linker.at());
@@ -273,10 +272,7 @@ class Planner {
 Result<RotaryPlan> plan(const Part& part, const BallTool& tool, const RotaryOptions& options,
                         Diagnostics& diagnostics) {
   if (auto ok = check(part, tool, options); !ok) return ok.error();
-  Planner planner(part, tool, options, diagnostics);
-  if (options.threads == 0) return planner.run();
-  tbb::task_arena arena(static_cast<int>(std::min(options.threads, kMostThreads)));
-  return arena.execute([&] { return planner.run(); });
+  return Planner(part, tool, options, diagnostics).run();
 }
 
 }  // namespace burin::rotary

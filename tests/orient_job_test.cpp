@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bent faces -> tool angles and side steps -> CL, measured by verify, which shares nothing with the planner: gouges
+// of the whole motion, and what stands between the paths, beside one tilt for all at the same scallop.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "burin/geom/surface/interpolate.h"
+#include "burin/geom/surface/tessellate.h"
+#include "burin/job/orient_check.h"
+#include "burin/plan/orient/orient.h"
+#include "burin/plan/orient/to_cl.h"
+#include "burin/verify/strip_check.h"
+
+namespace burin {
+namespace {
+
+using geom::Point3;
+using orient::OrientOptions;
+using orient::OrientPlan;
+using orient::Part;
+
+/// A face of 90 x 60 mm that looks up: bent by two curvatures, with a wave along x and one along y.
+struct Bend {
+  const char* name;
+  double kx, ky, wave_x, wave_y;
+};
+std::ostream& operator<<(std::ostream& out, const Bend& bend) {
+  return out << bend.name;
+}
+
+Part bent(const Bend& bend) {
+  geom::PointGrid grid{19, 15, {}};
+  for (int j = 0; j < grid.count_v; ++j) {
+    for (int i = 0; i < grid.count_u; ++i) {
+      const double x = -45 + 90.0 * i / (grid.count_u - 1), y = -30 + 60.0 * j / (grid.count_v - 1);
+      const double z = 0.5 * (bend.kx * x * x + bend.ky * y * y) + bend.wave_x * std::sin(x / 14) +
+                       bend.wave_y * std::sin(y / 12);
+      grid.points.push_back({x, y, z});
+    }
+  }
+  Part part;
+  orient::DesignFace face;
+  face.surface = geom::interpolate(grid).value();
+  face.number = 1;
+  auto triangles = geom::tessellate(face.surface, false, {}, {0.0005, 0, 2'000'000});
+  part.mesh = std::move(triangles->mesh);
+  part.design_triangles = part.mesh.triangles.size();
+  part.deflection_mm = triangles->deflection_mm;
+  for (const Point3& p : part.mesh.vertices) part.bounds.add(p);
+  part.faces.push_back(std::move(face));
+  return part;
+}
+
+const model::Mill& mill() {
+  static const model::Mill kMill{model::MillKind::flat, 8, 0, 30, {{20, 60}}};
+  return kMill;
+}
+
+OrientOptions options_of(orient::Objective objective, orient::Search search, bool smooth) {
+  OrientOptions options;
+  options.range.alpha_hi = geom::radians(40);
+  options.objective = objective;
+  options.search = search;
+  options.smooth = smooth;
+  options.scallop_mm = 0.05;
+  options.paths.max_step_mm = 3;
+  return options;
+}
+
+struct Milled {
+  OrientPlan plan;
+  job::OrientCheck check;
+  verify::StripReport strips;
+};
+
+Milled milled(const Part& part, const OrientOptions& options) {
+  const orient::Scene scene(part.mesh, mill(),
+                            orient::tool_body(mill(), options.tolerance_mm, options.clearance_mm));
+  const orient::MachineLimits limits;
+  LocalWorkers workers(0);
+  Diagnostics diagnostics;
+  Milled out;
+  out.plan = orient::plan(part, scene, limits, {}, nullptr, options, workers, diagnostics, nullptr).value();
+  const auto path = orient::to_cl(part, scene, limits, out.plan.paths, {});
+  out.check = job::check_orient_job(part, mill(), path->program, {.threads = 0}).value();
+  std::vector<verify::StripPass> passes;
+  for (const orient::OrientedPath& from : out.plan.paths) {
+    verify::StripPass pass;
+    pass.runs.emplace_back();
+    for (const orient::OrientedPoint& point : from.points)
+      if (point.reachable) pass.runs.back().push_back({point.cc.c, point.pose});
+    passes.push_back(std::move(pass));
+  }
+  out.strips =
+      verify::measure_strips(part.faces[0].surface, passes, job::checked_mill(mill()), {.window_mm = 1, .resolution_mm = 1e-3, .max_stations = 150, .threads = 0}).value();
+  return out;
+}
+
+class OrientJob : public testing::TestWithParam<Bend> {};
+
+TEST_P(OrientJob, WidestStripsLeaveTheScallopInFewerPaths) {
+  const Part part = bent(GetParam());
+  const Milled strip = milled(part, options_of(orient::Objective::strip, orient::Search::optimal, false));
+  const Milled smooth = milled(part, options_of(orient::Objective::strip, orient::Search::optimal, true));
+  const Milled radius = milled(part, options_of(orient::Objective::radius, orient::Search::optimal, false));
+  const Milled sturz = milled(part, options_of(orient::Objective::radius, orient::Search::sturz, false));
+  for (const auto& [name, r] : {std::pair{"strip", &strip}, {"smooth", &smooth}, {"radius", &radius}, {"sturz", &sturz}}) {
+    std::printf("%s %s: paths %zu cut %.0f unreachable %zu gouge %.4f (bound %.4f) scallop %.4f..%.4f strip gouge %.4f tests %.1f\n", GetParam().name, name, r->plan.paths.size(), r->plan.cut_mm, r->plan.unreachable, r->check.gouge_max_mm(), r->check.bound_mm, r->strips.scallop_min_mm, r->strips.scallop_max_mm, r->strips.gouge_max_mm, double(r->plan.tests) / double(r->plan.contact_points));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Faces, OrientJob,
+                         testing::Values(Bend{"plane", 0, 0, 0, 0}, Bend{"bowl", 0.004, 0.004, 0, 0},
+                                         Bend{"saddle", 0.006, -0.005, 0, 0},
+                                         Bend{"waves", 0.002, -0.002, 1.2, 0.6}),
+                         [](const auto& face) { return std::string(face.param.name); });
+
+}  // namespace
+}  // namespace burin
