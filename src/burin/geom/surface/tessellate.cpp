@@ -10,6 +10,7 @@
 #include "burin/geom/point_tools.h"
 #include "burin/geom/surface/evaluate.h"
 #include "burin/geom/surface/mesh_cells.h"
+#include "burin/geom/surface/modify.h"
 #include "burin/geom/surface/patch_grids.h"
 #include "burin/geom/surface/trim_cells.h"
 
@@ -142,12 +143,62 @@ Result<Tessellation> trimmed(const NurbsSurface& surface, const detail::Spans& s
 /// Steps of the deflection when there would be too many triangles.
 constexpr double kCoarser = 1.1;
 
+/// Long pieces are halved as long as that saves triangles: bounds are better and numbers of lines nearer to
+/// what each place needs. Judged at a deflection of this share of the surface's size.
+constexpr double kFine = 1e-5, kSaves = 0.9;
+constexpr double kManyTriangles = 64;  ///< a piece
+constexpr int kMostRounds = 4;
+
+NurbsSurface halved_spans(const NurbsSurface& surface, const detail::Spans& spans) {
+  const auto middles = [](const std::vector<Interval>& list) {
+    std::vector<double> out;
+    for (const Interval& span : list) out.push_back(0.5 * (span.lo + span.hi));
+    return out;
+  };
+  // A knot in a direction of degree 1 would count as a crease.
+  NurbsSurface out = surface;
+  if (surface.degree_u > 1) out = insert_knots(out, Direction::u, middles(spans.u));
+  if (surface.degree_v > 1) out = insert_knots(out, Direction::v, middles(spans.v));
+  return out;
+}
+
+/// The same surface over the same parameters, in more pieces; none when that does not help.
+detail::Spans finer(const NurbsSurface& surface, detail::Spans spans) {
+  NurbsSurface now = surface;
+  const double deflection = kFine * bounds(surface).diagonal();
+  if (!(deflection > 0)) return {};
+  bool helped = false;
+  double total = detail::patch_counts(spans, deflection, 0).total;
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (total < kManyTriangles * double(spans.bounds.size())) break;
+    now = halved_spans(now, spans);
+    auto next = detail::spans_of(now, false);
+    if (!next) break;
+    const double fewer = detail::patch_counts(*next, deflection, 0).total;
+    if (!(fewer < kSaves * total)) break;
+    spans = *std::move(next), total = fewer, helped = true;
+  }
+  if (!helped) return {};
+  return spans;
+}
+
 }  // namespace
 
 struct Tessellator::State {
   const NurbsSurface* surface = nullptr;
   const std::vector<std::vector<Point2>>* trims = nullptr;
-  detail::Spans spans;
+  detail::Spans spans, fine;  ///< as the knots are; in more pieces
+
+  struct Choice {
+    const detail::Spans* spans = nullptr;
+    detail::PatchCounts counts;
+  };
+  Choice cheaper(double deflection, double max_edge) const {
+    Choice plain{&spans, detail::patch_counts(spans, deflection, max_edge)};
+    if (fine.bounds.empty()) return plain;
+    Choice many{&fine, detail::patch_counts(fine, deflection, max_edge)};
+    return many.counts.total < plain.counts.total ? many : plain;
+  }
 };
 
 Result<Tessellator> Tessellator::make(const NurbsSurface& surface,
@@ -157,13 +208,15 @@ Result<Tessellator> Tessellator::make(const NurbsSurface& surface,
       if (!is_finite(p)) return Error{ErrorCode::geometry, "a trim has a place that is not finite", {}};
   auto spans = detail::spans_of(surface, !trims.empty());
   if (!spans) return spans.error();
+  detail::Spans fine;
+  if (trims.empty()) fine = finer(surface, *spans);
   Tessellator out;
-  out.state_ = std::make_shared<const State>(State{&surface, &trims, *std::move(spans)});
+  out.state_ = std::make_shared<const State>(State{&surface, &trims, *std::move(spans), std::move(fine)});
   return out;
 }
 
 double Tessellator::triangles(double deflection_mm, double max_edge_mm) const {
-  return detail::patch_counts(state_->spans, deflection_mm, max_edge_mm).total;
+  return state_->cheaper(deflection_mm, max_edge_mm).counts.total;
 }
 
 Result<Tessellation> Tessellator::build(bool reversed, const TessellateOptions& options) const {
@@ -179,16 +232,17 @@ Result<Tessellation> Tessellator::build(bool reversed, const TessellateOptions& 
                      std::to_string(options.max_triangles) + " triangles)",
                  {}};
   double deflection = options.deflection_mm;
-  auto counts = detail::patch_counts(spans, deflection, options.max_edge_mm);
+  State::Choice chosen = state_->cheaper(deflection, options.max_edge_mm);
   // Without a bound on the edges the count falls to one cell a piece in the end.
-  while (counts.total > most) {
-    counts = detail::patch_counts(spans, deflection, 0);
-    if (counts.total <= most) break;
-    deflection *= std::max(kCoarser, 0.5 * counts.total / most);
+  while (chosen.counts.total > most) {
+    chosen = state_->cheaper(deflection, 0);
+    if (chosen.counts.total <= most) break;
+    deflection *= std::max(kCoarser, 0.5 * chosen.counts.total / most);
     if (!std::isfinite(deflection))
       return Error{ErrorCode::range, "a surface too large to be cut in triangles", {}};
   }
-  return Tessellation{detail::patch_mesh(*state_->surface, spans, counts, reversed), counts.deflection_mm};
+  return Tessellation{detail::patch_mesh(*state_->surface, *chosen.spans, chosen.counts, reversed),
+                      chosen.counts.deflection_mm};
 }
 
 Result<Tessellation> tessellate(const NurbsSurface& surface, bool reversed,

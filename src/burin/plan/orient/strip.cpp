@@ -336,7 +336,7 @@ Strip ball_strip(const CcPoint& at, double ball_radius, double scallop_mm) {
 
 double StripGoal::value(const CcPoint& at, const Angles& angles) const {
   const Strip strip = strip_at(at, angles, *mill_, scallop_mm_);
-  return 2 * std::min(strip.left, strip.right);
+  return count_ == StripCount::whole ? strip.width() : 2 * std::min(strip.left, strip.right);
 }
 
 }  // namespace burin::orient
