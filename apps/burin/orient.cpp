@@ -257,7 +257,8 @@ void fill_report(const OrientSetup& setup, const OrientRun& run, const std::opti
               {"triangles", setup.part.mesh.triangles.size()},
               {"cl_points", run.path.program.move_count()},
               {"links", run.path.links},
-              {"broken", run.path.broken.size()}};
+              {"broken", run.path.broken.size()},
+              {"stranded", run.path.stranded.size()}};
   if (run.joints) r.counts["feed_limited"] = run.joints->feed_limited;
   if (run.nc) r.counts["nc_blocks"] = run.nc->moves;
   r.quality = {{"rho_gain_mean", plan.gain_mean},
@@ -399,6 +400,13 @@ Result<void> make_motion(const OrientArgs& args, const OrientSetup& setup, const
   if (!path) return path.error();
   run.path = std::move(*path);
   run.path.program.name = fs::path(args.job).stem().string();
+  if (!run.path.stranded.empty())
+    session.diagnostics.add({Severity::left_out,
+                             "stranded",
+                             std::to_string(run.path.stranded.size()) +
+                                 " contact points are left out: the tool finds no clear way to them and back "
+                                 "(a longer tool, a slimmer holder, other paths)",
+                             {}});
   if (!run.path.broken.empty())
     session.diagnostics.info("retracted",
                              std::to_string(run.path.broken.size()) +
