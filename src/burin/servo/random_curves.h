@@ -3,16 +3,17 @@
 // feeds and rapids.
 #pragma once
 
-#include <random>
+#include <cmath>
 #include <vector>
 
 #include "burin/servo/plan.h"
+#include "burin/servo/random_motion.h"
 
 namespace burin::servo::test {
 
-class RandomCurves {
+class RandomCurves : RandomMotion {
  public:
-  explicit RandomCurves(std::uint64_t seed) : random_(seed) {}
+  explicit RandomCurves(std::uint64_t seed) : RandomMotion(seed) {}
 
   std::vector<Stretch> curve() {
     std::vector<Stretch> out;
@@ -37,21 +38,12 @@ class RandomCurves {
   }
 
  private:
-  double real(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random_); }
-  int integer(int lo, int hi) { return std::uniform_int_distribution<int>(lo, hi)(random_); }
-  double log_uniform(double lo, double hi) { return std::exp(real(std::log(lo), std::log(hi))); }
-  geom::Vec3 direction() {
-    geom::Vec3 v;
-    do v = {real(-1, 1), real(-1, 1), integer(0, 1) ? real(-1, 1) : 0.0};
-    while (geom::norm(v) < 0.1);
-    return geom::unit(v);
-  }
+  geom::Vec3 direction() { return any_direction(); }
   double feed() { return integer(0, 7) == 0 ? 0 : log_uniform(200, 12000); }
 
   void append(std::vector<Stretch>& out, geom::QuinticPath path, double f) {
     if (path.empty()) return;
-    at_ = path.end();
-    heading_ = geom::unit(path.nodes.back().d1);
+    go_on_from(path);
     if (heading_ == geom::Vec3{}) heading_ = direction();
     out.push_back({std::move(path), {}, f, -1, -1});
   }
@@ -147,16 +139,9 @@ class RandomCurves {
       const geom::Vec3 p = kind == 0 ? t2 * a + t3 * b : kind == 1 ? t3 * a : t3 * a + t2 * t2 * b;
       path.nodes.back().p = geom::Point3{} + p;
     }
-    const geom::Vec3 shift = at_ - path.start();
-    for (auto& node : path.nodes) node.p = node.p + shift;
-    path.nodes.front().p = at_;
+    place(path);
     append(out, std::move(path), feed());
   }
-
-  std::mt19937_64 random_;
-  geom::Point3 at_;
-  geom::Vec3 heading_;
-  double scale_ = 1;
 };
 
 }  // namespace burin::servo::test

@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include "burin/geom/surface/evaluate.h"
 #include "burin/servo/plan.h"
+#include "burin/servo/random_motion.h"
 
 namespace burin::servo::test {
 
-class WildCurves {
+class WildCurves : RandomMotion {
  public:
-  explicit WildCurves(std::uint64_t seed) : random_(seed) {}
+  explicit WildCurves(std::uint64_t seed) : RandomMotion(seed) {}
 
   std::vector<Stretch> curve() {
     std::vector<Stretch> out;
@@ -45,16 +45,10 @@ class WildCurves {
   }
 
  private:
-  double real(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random_); }
-  int integer(int lo, int hi) { return std::uniform_int_distribution<int>(lo, hi)(random_); }
-  double log_uniform(double lo, double hi) { return std::exp(real(std::log(lo), std::log(hi))); }
   geom::Vec3 direction() {
-    geom::Vec3 v;
     const int kind = integer(0, 9);
     if (kind < 3) return {kind == 0 ? 1.0 : 0.0, kind == 1 ? 1.0 : 0.0, kind == 2 ? 1.0 : 0.0};
-    do v = {real(-1, 1), real(-1, 1), integer(0, 1) ? real(-1, 1) : 0.0};
-    while (geom::norm(v) < 0.1);
-    return geom::unit(v);
+    return any_direction();
   }
 
   /// Slow ones only on short paths: a part is run through in half a second at most.
@@ -68,8 +62,7 @@ class WildCurves {
     // Where rounding hides a difference of parameters the path has no shape.
     for (std::size_t i = 1; i < path.nodes.size(); ++i)
       if (!(path.nodes[i].t > path.nodes[i - 1].t)) return;
-    at_ = path.end();
-    heading_ = geom::unit(path.nodes.back().d1);
+    go_on_from(path);
     if (heading_ == geom::Vec3{}) heading_ = direction();
     const double f = feed(geom::length(path));
     out.push_back({std::move(path), {}, f, -1, -1});
@@ -211,17 +204,6 @@ class WildCurves {
     }
     append(out, std::move(path));
   }
-
-  void place(geom::QuinticPath& path) const {
-    const geom::Vec3 shift = at_ - path.start();
-    for (auto& node : path.nodes) node.p = node.p + shift;
-    path.nodes.front().p = at_;
-  }
-
-  std::mt19937_64 random_;
-  geom::Point3 at_;
-  geom::Vec3 heading_;
-  double scale_ = 1;
 };
 
 }  // namespace burin::servo::test

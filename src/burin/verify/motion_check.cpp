@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/point_tools.h"
 #include "burin/verify/sample_grid.h"
 
 namespace burin::verify {
@@ -22,13 +23,6 @@ struct Placed {
   Point3 center;
   Vec3 axis;
 };
-
-double distance_to_segment(Point3 q, Point3 a, Point3 b) {
-  const Vec3 ab = b - a, aq = q - a;
-  const double length2 = dot(ab, ab);
-  const double t = length2 > 0 ? std::clamp(dot(aq, ab) / length2, 0.0, 1.0) : 0;
-  return norm(aq - t * ab);
-}
 
 class Check {
  public:

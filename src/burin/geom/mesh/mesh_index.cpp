@@ -7,19 +7,13 @@
 #include <limits>
 
 #include "burin/geom/mesh/mesh_tree.h"
+#include "burin/geom/point_tools.h"
 
 namespace burin::geom {
 
 using detail::TreePacket;
 
 namespace {
-
-bool finite(Point3 p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-}
-bool finite(Vec3 v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 /// One triangle of a packet, and the place on it that is nearest to a point.
 struct Triangle {
@@ -110,7 +104,7 @@ Box3 MeshIndex::bounds() const {
 }
 
 std::optional<MeshIndex::Hit> MeshIndex::nearest(Point3 c, double within) const {
-  if (state_->tree.nodes.empty() || !finite(c) || !(within > 0)) return std::nullopt;
+  if (state_->tree.nodes.empty() || !is_finite(c) || !(within > 0)) return std::nullopt;
   const auto found = state_->ask(c, within * within);
   if (found.lane < 0) return std::nullopt;
   const double distance = std::sqrt(found.distance2);
@@ -126,7 +120,7 @@ bool MeshIndex::inside(Point3 c) const {
 std::optional<double> MeshIndex::ball_out(Point3 c, Vec3 direction, double radius, double allowed,
                                           double limit, double accuracy_mm) const {
   const double need = radius - allowed;  // distance that the centre must keep
-  if (!finite(c) || !finite(direction) || !std::isfinite(need) || !(limit >= 0)) return std::nullopt;
+  if (!is_finite(c) || !is_finite(direction) || !std::isfinite(need) || !(limit >= 0)) return std::nullopt;
   if (state_->tree.nodes.empty()) return 0.0;
   // Rounding of places this far out; nothing is decided below it.
   constexpr double kRounding = 1e-14;

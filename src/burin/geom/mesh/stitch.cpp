@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "burin/geom/box_tree.h"
 #include "burin/geom/mesh/check.h"
@@ -13,29 +14,42 @@ namespace burin::geom {
 
 namespace {
 
+/// The corners of open edges, found by place (as seen along z).
+struct OpenCorners {
+  std::vector<std::uint32_t> number;  ///< of the k-th of them in the mesh, ascending
+  BoxTree2 tree;                      ///< over them: k
+
+  OpenCorners(const Mesh& mesh, const Edges& edges)
+      : number(numbers(mesh, edges)), tree(boxes(mesh, number)) {}
+
+ private:
+  static std::vector<std::uint32_t> numbers(const Mesh& mesh, const Edges& edges) {
+    std::vector<bool> open(mesh.vertices.size(), false);
+    for (HalfEdge h = 0; h < edges.twin.size(); ++h) {
+      if (edges.twin[h] == kBoundary) open[from(mesh, h)] = open[to(mesh, h)] = true;
+    }
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < open.size(); ++i)
+      if (open[i]) out.push_back(i);
+    return out;
+  }
+  static std::vector<Box2> boxes(const Mesh& mesh, const std::vector<std::uint32_t>& number) {
+    std::vector<Box2> out;
+    for (const std::uint32_t i : number) out.push_back(Box2{xy(mesh.vertices[i]), xy(mesh.vertices[i])});
+    return out;
+  }
+};
+
 /// Open corners no farther apart than the tolerance become one.
 Mesh corners_joined(const Mesh& mesh, double tolerance) {
-  const Edges edges = find_edges(mesh);
-  std::vector<bool> open(mesh.vertices.size(), false);
-  for (HalfEdge h = 0; h < edges.twin.size(); ++h) {
-    if (edges.twin[h] == kBoundary) open[from(mesh, h)] = open[to(mesh, h)] = true;
-  }
-  // As a mesh of the open corners alone, so that welding sees no others.
-  std::vector<std::uint32_t> number;
-  std::vector<Box2> boxes;
-  for (std::uint32_t i = 0; i < open.size(); ++i) {
-    if (!open[i]) continue;
-    number.push_back(i);
-    boxes.push_back(Box2{xy(mesh.vertices[i]), xy(mesh.vertices[i])});
-  }
-  const BoxTree2 tree(boxes);
+  const OpenCorners open(mesh, find_edges(mesh));
   std::vector<std::uint32_t> to_leader(mesh.vertices.size());
   for (std::uint32_t i = 0; i < to_leader.size(); ++i) to_leader[i] = i;
-  for (const std::uint32_t i : number) {
+  for (const std::uint32_t i : open.number) {
     const Point3 p = mesh.vertices[i];
     double least = tolerance;
-    tree.query(Box2{xy(p), xy(p)}.grown(tolerance), [&](std::uint32_t k) {
-      const std::uint32_t other = number[k];
+    open.tree.query(Box2{xy(p), xy(p)}.grown(tolerance), [&](std::uint32_t k) {
+      const std::uint32_t other = open.number[k];
       // Only to earlier ones that stay themselves: no chains.
       if (other < i && to_leader[other] == other) {
         const double d = distance(mesh.vertices[other], p);
@@ -58,8 +72,7 @@ struct Split {
 };
 
 /// The open corners that an open edge passes within the tolerance, between its ends.
-std::vector<Split> passed(const Mesh& mesh, HalfEdge h, const BoxTree2& tree,
-                          const std::vector<std::uint32_t>& number, double tolerance) {
+std::vector<Split> passed(const Mesh& mesh, HalfEdge h, const OpenCorners& open, double tolerance) {
   const Point3 a = mesh.vertices[from(mesh, h)], b = mesh.vertices[to(mesh, h)];
   const std::uint32_t apex = from(mesh, side_before(h));
   const Vec3 e = b - a;
@@ -68,8 +81,8 @@ std::vector<Split> passed(const Mesh& mesh, HalfEdge h, const BoxTree2& tree,
   Box2 box;
   box.add(xy(a));
   box.add(xy(b));
-  tree.query(box.grown(tolerance), [&](std::uint32_t k) {
-    const std::uint32_t v = number[k];
+  open.tree.query(box.grown(tolerance), [&](std::uint32_t k) {
+    const std::uint32_t v = open.number[k];
     if (v == from(mesh, h) || v == to(mesh, h) || v == apex) return true;
     const Point3 p = mesh.vertices[v];
     const double t = ee > 0 ? dot(p - a, e) / ee : 0;
@@ -85,18 +98,7 @@ std::vector<Split> passed(const Mesh& mesh, HalfEdge h, const BoxTree2& tree,
 /// False when there was nothing to do.
 bool split_edges(Mesh& mesh, double tolerance) {
   const Edges edges = find_edges(mesh);
-  std::vector<bool> open(mesh.vertices.size(), false);
-  for (HalfEdge h = 0; h < edges.twin.size(); ++h) {
-    if (edges.twin[h] == kBoundary) open[from(mesh, h)] = open[to(mesh, h)] = true;
-  }
-  std::vector<std::uint32_t> number;
-  std::vector<Box2> boxes;
-  for (std::uint32_t i = 0; i < open.size(); ++i) {
-    if (!open[i]) continue;
-    number.push_back(i);
-    boxes.push_back(Box2{xy(mesh.vertices[i]), xy(mesh.vertices[i])});
-  }
-  const BoxTree2 tree(boxes);
+  const OpenCorners open(mesh, edges);
   std::vector<std::array<std::uint32_t, 3>> out;
   bool any = false;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -104,7 +106,7 @@ bool split_edges(Mesh& mesh, double tolerance) {
     HalfEdge side = 3 * t;
     for (HalfEdge h = 3 * t; h < 3 * t + 3 && splits.empty(); ++h) {
       if (edges.twin[h] != kBoundary) continue;
-      splits = passed(mesh, h, tree, number, tolerance);
+      splits = passed(mesh, h, open, tolerance);
       side = h;
     }
     if (splits.empty()) {

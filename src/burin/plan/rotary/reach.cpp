@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/point_tools.h"
 #include "burin/plan/rotary/reach_exact.h"
 #include "burin/plan/rotary/reach_kernels.h"
 #include "burin/plan/rotary/reach_tree.h"
@@ -34,10 +35,6 @@ std::vector<Piece> pieces_of(const model::BallTool& tool, const ReachOptions& op
     at += tool.holder[i].height;
   }
   return out;
-}
-
-bool finite(geom::Point3 p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 Corners corners_of(const LeafBlock& leaf, int lane, geom::Point3 center) {
@@ -228,7 +225,7 @@ struct ReachIndex::State {
   const ReachKernels* kernels = nullptr;
 };
 
-ReachIndex::ReachIndex(const geom::Mesh& mesh, const model::BallTool& tool, double /*accuracy_rad*/)
+ReachIndex::ReachIndex(const geom::Mesh& mesh, const model::BallTool& tool)
     : state_(std::make_unique<State>()) {
   state_->tree = make_reach_tree(mesh);
   state_->tool = tool;
@@ -239,7 +236,7 @@ ReachIndex::ReachIndex(ReachIndex&&) noexcept = default;
 ReachIndex& ReachIndex::operator=(ReachIndex&&) noexcept = default;
 
 AngleSet ReachIndex::reachable(geom::Point3 center, const ReachOptions& options) const {
-  if (!finite(center) || !std::isfinite(options.grow_mm)) return {};
+  if (!is_finite(center) || !std::isfinite(options.grow_mm)) return {};
   Arcs arcs;
   Walk walk(state_->tree, *state_->kernels, center, arcs);
   for (const Piece& piece : pieces_of(state_->tool, options)) {

@@ -44,9 +44,7 @@ struct ReachOptions {
 
 class ReachIndex {
  public:
-  /// `accuracy_rad`: the holder's intervals may be too small by this (never too large); the shank's are
-  /// exact.
-  ReachIndex(const geom::Mesh& mesh, const model::BallTool& tool, double accuracy_rad = 1e-4);
+  ReachIndex(const geom::Mesh& mesh, const model::BallTool& tool);
   ~ReachIndex();
   ReachIndex(ReachIndex&&) noexcept;
   ReachIndex& operator=(ReachIndex&&) noexcept;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "burin/plan/rotary/reach_tree.h"
+#include "burin/geom/point_tools.h"
 
 #include <algorithm>
 #include <array>
@@ -31,7 +32,7 @@ std::vector<Corners3> in_fixed_order(const geom::Mesh& mesh) {
       good = t[i] < mesh.vertices.size();
       if (!good) break;
       c[i] = mesh.vertices[t[i]];
-      good = std::isfinite(c[i].x) && std::isfinite(c[i].y) && std::isfinite(c[i].z);
+      good = is_finite(c[i]);
     }
     if (!good) continue;
     std::sort(c.begin(), c.end(), before);

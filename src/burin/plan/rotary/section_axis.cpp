@@ -8,6 +8,7 @@
 
 #include "burin/geom/box_tree.h"
 #include "burin/geom/mesh/slice.h"
+#include "burin/geom/point_tools.h"
 #include "burin/plan/rotary/reach.h"
 
 namespace burin::rotary {
@@ -34,12 +35,6 @@ double theta_of(Vec2 d) {
   return std::atan2(d.x, d.y);
 }
 
-double distance_to(Point2 p, Point2 a, Point2 b) {
-  const Vec2 d = b - a;
-  const double dd = norm2(d), t = dd > 0 ? std::clamp(dot(p - a, d) / dd, 0.0, 1.0) : 0.0;
-  return distance(p, a + t * d);
-}
-
 /// A section with the question whether a place is nearer to it than some distance.
 class Section {
  public:
@@ -49,7 +44,7 @@ class Section {
     Box2 area;
     area.add(p);
     return !tree_.query(area.grown(than), [&](std::uint32_t i) {
-      return distance_to(p, points_[i], points_[(i + 1) % points_.size()]) >= than;
+      return distance_to_segment(p, points_[i], points_[(i + 1) % points_.size()]) >= than;
     });
   }
 
@@ -141,7 +136,8 @@ std::optional<std::size_t> nearest_loop(const std::vector<geom::SliceLoop>& loop
   for (std::size_t k = 0; k < loops.size(); ++k) {
     const auto& points = loops[k].points;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double d = distance_to(p, in_plane(points[i].p), in_plane(points[(i + 1) % points.size()].p));
+      const double d =
+          distance_to_segment(p, in_plane(points[i].p), in_plane(points[(i + 1) % points.size()].p));
       if (d < least) {
         least = d;
         best = k;

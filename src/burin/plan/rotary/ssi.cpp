@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burin/geom/point_tools.h"
 #include "burin/plan/rotary/center_path.h"
 #include "burin/plan/rotary/sweep.h"
 
@@ -24,13 +25,6 @@ constexpr double kJump = 4;
 constexpr int kBisections = 10;
 /// Rounds about a closed path for a better start.
 constexpr int kRounds = 3;
-
-double distance_to_segment(Point3 p, Point3 a, Point3 b) {
-  const Vec3 ab = b - a, ap = p - a;
-  const double length2 = dot(ab, ab);
-  const double f = length2 > 0 ? std::clamp(dot(ap, ab) / length2, 0.0, 1.0) : 0;
-  return norm(ap - f * ab);
-}
 
 /// A place on the path: index of the dense place before, and the part of the way to the next one.
 struct Spot {

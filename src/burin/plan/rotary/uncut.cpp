@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "burin/plan/rotary/uncut.h"
+#include "burin/geom/point_tools.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
-
-#include "burin/geom/vec.h"
 
 namespace burin::rotary {
 namespace {
@@ -15,13 +14,6 @@ struct Chord {
   geom::Point3 a, b;
   double x_min = 0, x_max = 0;
 };
-
-double distance_to(const Chord& c, geom::Point3 p) {
-  const geom::Vec3 d = c.b - c.a;
-  const double l2 = dot(d, d);
-  const double t = l2 > 0 ? std::clamp(dot(p - c.a, d) / l2, 0.0, 1.0) : 0;
-  return geom::distance(p, c.a + t * d);
-}
 
 /// The cuts, by x.
 class Cuts {
@@ -45,11 +37,11 @@ class Cuts {
                                          [](const Chord& c, double x) { return c.x_min < x; });
     double best = std::numeric_limits<double>::infinity();
     for (auto it = middle; it != chords_.end() && it->x_min - p.x < best; ++it)
-      best = std::min(best, distance_to(*it, p));
+      best = std::min(best, distance_to_segment(p, it->a, it->b));
     for (auto it = middle; it != chords_.begin();) {
       --it;
       if (p.x - it->x_min - longest_ > best) break;
-      best = std::min(best, distance_to(*it, p));
+      best = std::min(best, distance_to_segment(p, it->a, it->b));
     }
     return best;
   }
