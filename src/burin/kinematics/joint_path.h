@@ -29,8 +29,7 @@ struct JointPathOptions {
   /// Tool-centre-point control moves the tip straight by itself: points between only where the axis would
   /// leave its great circle, rotary axes turning evenly.
   bool tool_centre = false;
-  /// Moves take longer where the change of a rotary axis' speed from one to the next asks for more than its
-  /// acceleration.
+  /// Moves take longer where a rotary axis would need more than its acceleration.
   bool keep_acceleration = false;
   /// The tip's speed within a move is within this share of the feed; points between where it is not.
   double speed_share = 0.01;
@@ -56,15 +55,17 @@ struct JointPath {
 Result<JointPath> make_joint_path(const Kinematics& machine, const cl::Program& program,
                                   const JointPathOptions& options);
 
-/// Largest shares of the rotary axes' speed and acceleration in feed moves as they are timed; acceleration:
-/// the change of speed from one move to the next over half the time of both. Axes without the figure do not
-/// count.
+/// Largest shares of the rotary axes' speed and acceleration in feed moves as they are timed. Acceleration:
+/// of the motion with its corners rounded by at most the tolerance (joint_times.cpp). Axes without the figure
+/// do not count; rapids part what is looked at.
 struct RotaryShares {
   std::array<double, 2> speed{}, acceleration{};
 };
-RotaryShares rotary_shares(const Kinematics& machine, const std::vector<JointMove>& moves);
-/// Makes moves longer until the acceleration is kept; how many. Rapids part what is looked at.
-std::size_t keep_acceleration(const Kinematics& machine, std::vector<JointMove>& moves);
+RotaryShares rotary_shares(const Kinematics& machine, const std::vector<JointMove>& moves,
+                           double axis_tolerance_rad);
+/// Makes moves longer until the acceleration is kept; how many.
+std::size_t keep_acceleration(const Kinematics& machine, std::vector<JointMove>& moves,
+                              double axis_tolerance_rad);
 
 /// Joints at t in [0, 1] of a linear move.
 Joints between(const Joints& a, const Joints& b, double t);

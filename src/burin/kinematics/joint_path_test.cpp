@@ -28,7 +28,7 @@ double off_line(Point3 p, Point3 a, Point3 b) {
 }
 
 // Dense samples of every joint move stay within the tolerance of the straight line the CL data asks for.
-TEST(JointPath, KeepsTheTipOnItsLine) {
+TEST(JointPath, KeepsTipAndAxisOnTheirWays) {
   std::mt19937 engine(3);
   const auto in = [&](double lo, double hi) {
     return lo + (hi - lo) * static_cast<double>(engine()) / 4294967296.0;
@@ -52,8 +52,10 @@ TEST(JointPath, KeepsTheTipOnItsLine) {
         const JointMove& move = path->moves[m];
         const std::size_t leg = move.record - 1;  // feed rate and rapid stand before
         for (int s = 0; s <= 16; ++s) {
-          const Point3 tip = k.forward(between(at, move.to, s / 16.0)).tip;
-          ASSERT_LT(off_line(tip, poses[leg - 1].tip, poses[leg].tip), 1.05 * options.tolerance_mm);
+          const cl::Pose is = k.forward(between(at, move.to, s / 16.0));
+          ASSERT_LT(off_line(is.tip, poses[leg - 1].tip, poses[leg].tip), 1.05 * options.tolerance_mm);
+          const Vec3 circle = unit(cross(poses[leg - 1].axis, poses[leg].axis));
+          ASSERT_LT(std::abs(dot(is.axis, circle)), 1.05 * options.axis_tolerance_rad);
         }
         at = move.to;
       }
@@ -175,7 +177,7 @@ TEST(JointPath, TurnsTheTableAtAPole) {
       const auto [tip_off, axis_off] = measured(k, *path, poses, normal, tool_centre);
       EXPECT_LE(tip_off, 1.05 * options.tolerance_mm);
       EXPECT_LE(axis_off, 1.05 * options.axis_tolerance_rad);
-      EXPECT_LE(rotary_shares(k, path->moves).speed[0], 1 + 1e-9);
+      EXPECT_LE(rotary_shares(k, path->moves, options.axis_tolerance_rad).speed[0], 1 + 1e-9);
       EXPECT_LT(path->moves.size(), 4000u);
     }
   }
@@ -203,12 +205,11 @@ TEST(JointPath, ToolCentreNeedsFewerPoints) {
   EXPECT_NEAR(minutes, geom::distance(poses[0].tip, poses[1].tip) / 800, 1e-9);
 }
 
-// A table that starts and stops abruptly: times grow until the change of its speed is what it bears, and
-// nothing else changes.
+// A table that starts and stops abruptly: moves take longer until it can follow, and nothing else changes.
 TEST(JointPath, KeepsTheAccelerationOfATable) {
   const Kinematics k = preset("xyza");
   cl::Program program;
-  program.add(cl::FeedRate{2000});
+  program.add(cl::FeedRate{4000});
   const auto pose = [](double x, double turn) {
     return cl::Pose{{x, 30 * std::sin(turn), 30 * std::cos(turn)}, {0, std::sin(turn), std::cos(turn)}};
   };
@@ -225,28 +226,42 @@ TEST(JointPath, KeepsTheAccelerationOfATable) {
   const auto kept = make_joint_path(k, program, options);
   ASSERT_TRUE(quick.ok() && kept.ok());
   ASSERT_EQ(quick->moves.size(), kept->moves.size());
-  EXPECT_GT(rotary_shares(k, quick->moves).acceleration[0], 2);
+  const auto share = [&](const JointPath& path) {
+    return rotary_shares(k, path.moves, options.axis_tolerance_rad).acceleration[0];
+  };
+  EXPECT_GT(share(*quick), 1.5);
+  EXPECT_LE(share(*kept), 1.002);
   EXPECT_EQ(quick->acceleration_limited, 0u);
-  // Measured apart from the library: degrees, seconds.
-  double worst = 0, slower = 0;
   std::size_t changed = 0;
+  double slower = 0;
   for (std::size_t m = 1; m < kept->moves.size(); ++m) {
     EXPECT_EQ(kept->moves[m].to, quick->moves[m].to);
     EXPECT_GE(kept->moves[m].minutes, quick->moves[m].minutes);
     changed += kept->moves[m].minutes > quick->moves[m].minutes ? 1 : 0;
     slower += kept->moves[m].minutes - quick->moves[m].minutes;
-    if (m + 1 == kept->moves.size()) break;
-    const auto by = [&](std::size_t n) {
-      return geom::degrees(kept->moves[n].to.rotary[0] - kept->moves[n - 1].to.rotary[0]);
-    };
-    const double s0 = 60 * kept->moves[m].minutes, s1 = 60 * kept->moves[m + 1].minutes;
-    worst = std::max(worst, std::abs(by(m + 1) / s1 - by(m) / s0) / (0.5 * (s0 + s1)));
   }
-  EXPECT_LE(worst, 500 * (1 + 1e-5));
   EXPECT_EQ(changed, kept->acceleration_limited);
   EXPECT_GT(changed, 1u);
-  EXPECT_LT(changed, 60u);  // only about the two places
   EXPECT_LT(slower, 0.02);
+  // Apart from the library: an axis that follows with its speed averaged twice over tau never asks for more
+  // than its acceleration, and stays within the tolerance. Degrees, seconds.
+  const double tau = std::sqrt(8 * geom::degrees(options.axis_tolerance_rad) / 500);
+  const auto place = [&](double time) {
+    double from = 0;
+    for (std::size_t m = 1; m < kept->moves.size(); ++m) {
+      const double by = 60 * kept->moves[m].minutes;
+      const double a = geom::degrees(kept->moves[m - 1].to.rotary[0]),
+                   b = geom::degrees(kept->moves[m].to.rotary[0]);
+      if (time <= from + by) return a + (b - a) * std::max(0.0, time - from) / by;
+      from += by;
+    }
+    return geom::degrees(kept->moves.back().to.rotary[0]);
+  };
+  double end = 0, worst = 0;
+  for (const JointMove& move : kept->moves) end += 60 * move.minutes;
+  for (double time = tau; time < end - tau; time += 0.002)
+    worst = std::max(worst, std::abs(place(time + tau) - 2 * place(time) + place(time - tau)) / (tau * tau));
+  EXPECT_LE(worst, 500 * 1.01);
 }
 
 TEST(JointPath, ErrorsNameMoveAndAxis) {

@@ -67,10 +67,10 @@ struct Grids {
   double lowest = 1e300, highest = -1e300;  ///< z of the root
 };
 
-/// Radii that make the chord a smooth function of v up to the round tip.
-double station(const PropellerData& data, double v) {
+/// Radii for t from 0 to 1 in which the chord is nearly linear up to the round tip.
+double station(const PropellerData& data, double t) {
   const double a = std::sqrt(1 - data.hub_ratio), b = std::sqrt(1 - kOutermost);
-  const double w = a + v * (b - a);
+  const double w = a + t * (b - a);
   return 1 - w * w;
 }
 
@@ -88,6 +88,20 @@ Result<void> check_gap(const PropellerData& data, const BladeSection& section, d
                {}};
 }
 
+/// Lengths along the columns, from 0 to 1, in the mean: the surface is run through evenly.
+std::vector<double> mean_lengths(const geom::PointGrid& grid) {
+  const auto columns = static_cast<std::size_t>(grid.count_u), rows = static_cast<std::size_t>(grid.count_v);
+  std::vector<double> v(rows, 0.0), along(rows, 0.0);
+  for (std::size_t i = 0; i < columns; ++i) {
+    for (std::size_t j = 1; j < rows; ++j)
+      along[j] =
+          along[j - 1] + geom::distance(grid.points[i + j * columns], grid.points[i + (j - 1) * columns]);
+    for (std::size_t j = 0; j < rows; ++j) v[j] += along[j] / along.back() / double(columns);
+  }
+  v.back() = 1;
+  return v;
+}
+
 Result<Grids> grids_of(const PropellerData& data) {
   const std::vector<double>& places = b_series().places();
   Grids out;
@@ -95,8 +109,7 @@ Result<Grids> grids_of(const PropellerData& data) {
   out.face.count_u = out.back.count_u = static_cast<int>(places.size());
   out.face.count_v = out.back.count_v = kStations;
   for (int j = 0; j < kStations; ++j) {
-    out.v.push_back(j / double(kStations - 1));
-    const double x = station(data, out.v.back()), r = 0.5 * x * data.diameter;
+    const double x = station(data, j / double(kStations - 1)), r = 0.5 * x * data.diameter;
     const BladeSection section = blade_section(data, x);
     if (auto ok = check_gap(data, section, r); !ok) return ok.error();
     const Placing place(data, r, section.pitch);
@@ -110,6 +123,7 @@ Result<Grids> grids_of(const PropellerData& data) {
     }
   }
   out.u.front() = 0, out.u.back() = 1;
+  out.v = mean_lengths(out.face);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "burin/geom/mesh/check.h"
+#include "burin/geom/mesh/mesh_index.h"
 #include "burin/geom/surface/evaluate.h"
 
 namespace burin::model {
@@ -110,6 +111,34 @@ TEST(Propeller, BladesAndHubAreClosed) {
                 0.01 * hub.signed_volume);
     // Blade 0 without its side has one hole: the side.
     EXPECT_EQ(geom::examine(blade_back(data, *p, 0.1)).holes.size(), 1u);
+  }
+}
+
+TEST(Propeller, BladesKeepApartAndAreNowhereThinnerThanTheirEdges) {
+  for (const auto& [blades, area] : {std::pair{4, 1.05}, {5, 0.75}, {7, 0.85}}) {
+    PropellerData data;
+    data.blades = blades;
+    data.area_ratio = area;
+    const auto p = make_propeller(data);
+    ASSERT_TRUE(p.ok()) << p.error().to_string();
+    // Blade 1 against blade 2: turned by one pitch of the blades they would be the same.
+    geom::Mesh all = neighbour_blades(data, *p, 1);
+    const std::size_t triangles = all.triangles.size() / static_cast<std::size_t>(blades - 1);
+    const std::size_t vertices = all.vertices.size() / static_cast<std::size_t>(blades - 1);
+    geom::Mesh first = all;
+    first.triangles.resize(triangles);
+    const geom::MeshIndex index(first);
+    for (std::size_t i = vertices; i < 2 * vertices; i += 7) {
+      EXPECT_FALSE(index.inside(all.vertices[i]));
+      EXPECT_FALSE(index.nearest(all.vertices[i], 2).has_value());
+    }
+    const double edge = blade_section(data, 0.975).edge_thickness;
+    for (double v = 0; v <= 1; v += 0.05) {
+      for (double u = 0; u <= 1; u += 0.05) {
+        const double thick = geom::distance(geom::point(p->side, u, v), geom::point(p->other_side, u, v));
+        EXPECT_GT(thick, 0.99 * edge) << u << " " << v;
+      }
+    }
   }
 }
 

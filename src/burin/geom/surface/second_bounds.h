@@ -16,4 +16,9 @@ struct SecondBounds {
 inline constexpr int kMostHalvings = 80;
 SecondBounds second_bounds(const BezierPatch& patch, int most_halvings = kMostHalvings);
 
+/// The same for the distance from a chord to the surface alone: what runs along the surface does not count,
+/// but for the slope of the surface against the mean normal. `all`: second_bounds(). For the inside of a
+/// surface; gives `all` back where it is no better.
+SecondBounds normal_bounds(const BezierPatch& patch, const SecondBounds& all);
+
 }  // namespace burin::geom::detail

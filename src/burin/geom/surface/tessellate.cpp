@@ -9,45 +9,13 @@
 
 #include "burin/geom/point_tools.h"
 #include "burin/geom/surface/evaluate.h"
+#include "burin/geom/surface/mesh_cells.h"
+#include "burin/geom/surface/modify.h"
+#include "burin/geom/surface/patch_grids.h"
 #include "burin/geom/surface/trim_cells.h"
 
 namespace burin::geom {
 namespace {
-
-/// Corners at one place (poles) make no triangle.
-void add_triangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, bool reversed) {
-  const auto& p = mesh.vertices;
-  if (p[a] == p[b] || p[b] == p[c] || p[c] == p[a]) return;
-  if (reversed) std::swap(b, c);
-  mesh.triangles.push_back({a, b, c});
-}
-
-/// Counter-clockwise corners; cut at the shorter diagonal.
-void add_cell(Mesh& mesh, const std::array<std::uint32_t, 4>& c, bool reversed) {
-  const auto& p = mesh.vertices;
-  const std::size_t k = distance(p[c[0]], p[c[2]]) <= distance(p[c[1]], p[c[3]]) ? 0 : 1;
-  add_triangle(mesh, c[k], c[k + 1], c[k + 2], reversed);
-  add_triangle(mesh, c[k], c[k + 2], c[(k + 3) % 4], reversed);
-}
-
-Mesh whole(const NurbsSurface& surface, const GridLines& lines, bool reversed) {
-  Mesh mesh;
-  SurfaceEvaluator evaluator(surface);
-  const std::size_t columns = lines.u.size(), rows = lines.v.size();
-  mesh.vertices.resize(columns * rows);
-  for (std::size_t j = 0; j < rows; ++j)
-    evaluator.iso_points(Direction::u, lines.v[j], lines.u,
-                         std::span(mesh.vertices).subspan(j * columns, columns));
-  mesh.triangles.reserve(2 * (columns - 1) * (rows - 1));
-  for (std::size_t j = 0; j + 1 < rows; ++j) {
-    for (std::size_t i = 0; i + 1 < columns; ++i) {
-      const auto a = static_cast<std::uint32_t>(i + j * columns);
-      const auto d = static_cast<std::uint32_t>(a + columns);
-      add_cell(mesh, {a, a + 1, d + 1, d}, reversed);
-    }
-  }
-  return mesh;
-}
 
 /// Cells and triangles in the parameter plane first, then all points at once.
 class Trimmed {
@@ -74,8 +42,8 @@ class Trimmed {
     Mesh mesh;
     mesh.vertices.resize(places_.size());
     SurfaceEvaluator(surface_).points(places_, mesh.vertices);
-    for (const auto& q : quads_) add_cell(mesh, q, reversed);
-    for (const auto& t : triangles_) add_triangle(mesh, t[0], t[1], t[2], reversed);
+    for (const auto& q : quads_) detail::add_cell(mesh, q, reversed);
+    for (const auto& t : triangles_) detail::add_triangle(mesh, t[0], t[1], t[2], reversed);
     return mesh;
   }
 
@@ -154,29 +122,135 @@ Error too_long(std::size_t most) {
           {}};
 }
 
-}  // namespace
-
-Result<Tessellation> tessellate(const NurbsSurface& surface, bool reversed,
-                                const std::vector<std::vector<Point2>>& trims,
-                                const TessellateOptions& options) {
-  for (const auto& loop : trims)
-    for (const Point2 p : loop)
-      if (!is_finite(p)) return Error{ErrorCode::geometry, "a trim has a place that is not finite", {}};
-  auto lines = grid_lines(surface, options);
+/// Fewer cells when the trims fall into too many pieces, as long as that makes fewer cells.
+Result<Tessellation> trimmed(const NurbsSurface& surface, const detail::Spans& spans, bool reversed,
+                             const std::vector<std::vector<Point2>>& trims,
+                             const TessellateOptions& options) {
+  auto lines = detail::grid_lines(spans, options);
   if (!lines) return lines.error();
-  if (trims.empty()) return Tessellation{whole(surface, *lines, reversed), lines->deflection_mm};
-
-  // Fewer cells when the trims fall into too many pieces, as long as that makes fewer cells.
   TessellateOptions coarser = options;
   for (;;) {
     const auto cells = detail::TrimCells::make(*lines, trims, options.max_triangles);
     if (cells) return Tessellation{Trimmed(surface, *lines, *cells).build(reversed), lines->deflection_mm};
     const std::size_t before = (lines->u.size() - 1) * (lines->v.size() - 1);
     coarser.max_triangles = before;  // half as many cells
-    lines = grid_lines(surface, coarser);
+    lines = detail::grid_lines(spans, coarser);
     if (!lines || (lines->u.size() - 1) * (lines->v.size() - 1) >= before)
       return too_long(options.max_triangles);
   }
+}
+
+/// Steps of the deflection when there would be too many triangles.
+constexpr double kCoarser = 1.1;
+
+/// Long pieces are halved as long as that saves triangles: bounds are better and numbers of lines nearer to
+/// what each place needs. Judged at a deflection of this share of the surface's size.
+constexpr double kFine = 1e-5, kSaves = 0.9;
+constexpr double kManyTriangles = 64;  ///< a piece
+constexpr int kMostRounds = 4;
+
+NurbsSurface halved_spans(const NurbsSurface& surface, const detail::Spans& spans) {
+  const auto middles = [](const std::vector<Interval>& list) {
+    std::vector<double> out;
+    for (const Interval& span : list) out.push_back(0.5 * (span.lo + span.hi));
+    return out;
+  };
+  // A knot in a direction of degree 1 would count as a crease.
+  NurbsSurface out = surface;
+  if (surface.degree_u > 1) out = insert_knots(out, Direction::u, middles(spans.u));
+  if (surface.degree_v > 1) out = insert_knots(out, Direction::v, middles(spans.v));
+  return out;
+}
+
+/// The same surface over the same parameters, in more pieces; none when that does not help.
+detail::Spans finer(const NurbsSurface& surface, detail::Spans spans) {
+  NurbsSurface now = surface;
+  const double deflection = kFine * bounds(surface).diagonal();
+  if (!(deflection > 0)) return {};
+  bool helped = false;
+  double total = detail::patch_counts(spans, deflection, 0).total;
+  for (int round = 0; round < kMostRounds; ++round) {
+    if (total < kManyTriangles * double(spans.bounds.size())) break;
+    now = halved_spans(now, spans);
+    auto next = detail::spans_of(now, false);
+    if (!next) break;
+    const double fewer = detail::patch_counts(*next, deflection, 0).total;
+    if (!(fewer < kSaves * total)) break;
+    spans = *std::move(next), total = fewer, helped = true;
+  }
+  if (!helped) return {};
+  return spans;
+}
+
+}  // namespace
+
+struct Tessellator::State {
+  const NurbsSurface* surface = nullptr;
+  const std::vector<std::vector<Point2>>* trims = nullptr;
+  detail::Spans spans, fine;  ///< as the knots are; in more pieces
+
+  struct Choice {
+    const detail::Spans* spans = nullptr;
+    detail::PatchCounts counts;
+  };
+  Choice cheaper(double deflection, double max_edge) const {
+    Choice plain{&spans, detail::patch_counts(spans, deflection, max_edge)};
+    if (fine.bounds.empty()) return plain;
+    Choice many{&fine, detail::patch_counts(fine, deflection, max_edge)};
+    return many.counts.total < plain.counts.total ? many : plain;
+  }
+};
+
+Result<Tessellator> Tessellator::make(const NurbsSurface& surface,
+                                      const std::vector<std::vector<Point2>>& trims) {
+  for (const auto& loop : trims)
+    for (const Point2 p : loop)
+      if (!is_finite(p)) return Error{ErrorCode::geometry, "a trim has a place that is not finite", {}};
+  auto spans = detail::spans_of(surface, !trims.empty());
+  if (!spans) return spans.error();
+  detail::Spans fine;
+  if (trims.empty()) fine = finer(surface, *spans);
+  Tessellator out;
+  out.state_ = std::make_shared<const State>(State{&surface, &trims, *std::move(spans), std::move(fine)});
+  return out;
+}
+
+double Tessellator::triangles(double deflection_mm, double max_edge_mm) const {
+  return state_->cheaper(deflection_mm, max_edge_mm).counts.total;
+}
+
+Result<Tessellation> Tessellator::build(bool reversed, const TessellateOptions& options) const {
+  if (!(options.deflection_mm > 0) || !(options.max_edge_mm >= 0))
+    return Error{ErrorCode::range, "the deflection or the longest edge of triangles is not positive", {}};
+  const detail::Spans& spans = state_->spans;
+  if (!state_->trims->empty()) return trimmed(*state_->surface, spans, reversed, *state_->trims, options);
+  const auto most = static_cast<double>(options.max_triangles);
+  if (2 * static_cast<double>(spans.bounds.size()) > most)
+    return Error{ErrorCode::range,
+                 "a surface of " + std::to_string(spans.bounds.size()) + " pieces (at most " +
+                     std::to_string(options.max_triangles / 2) + " for " +
+                     std::to_string(options.max_triangles) + " triangles)",
+                 {}};
+  double deflection = options.deflection_mm;
+  State::Choice chosen = state_->cheaper(deflection, options.max_edge_mm);
+  // Without a bound on the edges the count falls to one cell a piece in the end.
+  while (chosen.counts.total > most) {
+    chosen = state_->cheaper(deflection, 0);
+    if (chosen.counts.total <= most) break;
+    deflection *= std::max(kCoarser, 0.5 * chosen.counts.total / most);
+    if (!std::isfinite(deflection))
+      return Error{ErrorCode::range, "a surface too large to be cut in triangles", {}};
+  }
+  return Tessellation{detail::patch_mesh(*state_->surface, *chosen.spans, chosen.counts, reversed),
+                      chosen.counts.deflection_mm};
+}
+
+Result<Tessellation> tessellate(const NurbsSurface& surface, bool reversed,
+                                const std::vector<std::vector<Point2>>& trims,
+                                const TessellateOptions& options) {
+  const auto tessellator = Tessellator::make(surface, trims);
+  if (!tessellator) return tessellator.error();
+  return tessellator->build(reversed, options);
 }
 
 }  // namespace burin::geom

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include "burin/base/result.h"
@@ -33,9 +34,26 @@ struct Tessellation {
   double deflection_mm =
       0;  ///< proven bound of triangle to surface, both ways; larger than asked for when triangles ran out
 };
-/// Over the cells of grid_lines: neighbours share their corners, no cracks. `trims`: polygons in (u, v) as in
-/// TrimLoop (none: the whole domain); cells outside go, cells the trim passes are cut along it. Errors as
-/// grid_lines; (geometry) trims that are not finite.
+
+/// One face, for which the bounds are computed once. Copies share them.
+class Tessellator {
+ public:
+  /// `trims`: polygons in (u, v) as in TrimLoop (none: the whole domain). Keeps the addresses of both. Errors
+  /// (range): more pieces than memory should hold; (geometry) damaged surfaces, trims that are not finite.
+  static Result<Tessellator> make(const NurbsSurface& surface, const std::vector<std::vector<Point2>>& trims);
+
+  /// About how many triangles the face has (without trims).
+  double triangles(double deflection_mm, double max_edge_mm = 0) const;
+  /// Without trims every Bezier piece has a grid of its own; neighbours share all places of their common
+  /// sides: no cracks. With trims over the cells of grid_lines: those outside go, those the trim passes are
+  /// cut along it. Errors as grid_lines.
+  Result<Tessellation> build(bool reversed, const TessellateOptions& options) const;
+
+ private:
+  struct State;
+  Tessellator() = default;
+  std::shared_ptr<const State> state_;
+};
 Result<Tessellation> tessellate(const NurbsSurface& surface, bool reversed,
                                 const std::vector<std::vector<Point2>>& trims,
                                 const TessellateOptions& options);

@@ -168,11 +168,14 @@ class Referee {
   Referee(const Shape& shape, const model::Mill& mill, double tolerance, double clearance)
       : shape_(&shape), mill_(mill) {
     const bool bull = mill.kind == model::MillKind::bull && mill.corner_radius > tolerance;
-    if (bull)
-      pieces_.push_back({mill.radius - mill.corner_radius, mill.corner_radius, mill.length,
+    if (bull) {
+      // The corner's tube within, and the side above it.
+      pieces_.push_back({mill.radius - mill.corner_radius, mill.corner_radius, mill.corner_radius,
                          mill.corner_radius - tolerance, true});
-    else
+      pieces_.push_back({mill.radius - tolerance, mill.corner_radius, mill.length, 0, true});
+    } else {
       pieces_.push_back({mill.radius - tolerance, tolerance, mill.length, 0, true});
+    }
     double height = mill.length;
     for (const model::HolderPiece& piece : mill.holder) {
       pieces_.push_back({piece.radius, height, height + piece.height, clearance, false});

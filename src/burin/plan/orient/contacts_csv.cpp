@@ -17,6 +17,7 @@ using geom::Vec3;
 constexpr std::array<const char*, 10> kColumns{"path", "x", "y", "z", "nx", "ny", "nz", "fx", "fy", "fz"};
 constexpr const char* kWanted = "path,x,y,z,nx,ny,nz,fx,fy,fz";
 /// More points than this in one file are refused; a line of 10 numbers has 20 characters at least.
+constexpr double kFarthest = 1e6;  ///< mm from the origin: beyond a kilometre is a slip
 constexpr std::size_t kMostPoints = 20'000'000;
 /// A feed whose tangent part is smaller than this share of it has no direction along the surface.
 constexpr double kAlongNormal = 1e-6;
@@ -104,6 +105,11 @@ Result<void> Reader::point(std::string_view line, std::vector<CcPath>& paths) {
     if (!number_here) {
       return error(ErrorCode::syntax, std::string(kColumns[i + 1]) + " = '" +
                                           std::string(text.substr(0, 40)) + "' (a finite number)");
+    }
+    if (i < 3 && std::abs(*number_here) > kFarthest) {
+      return error(ErrorCode::range, std::string(kColumns[i + 1]) + " = " + format_shortest(*number_here) +
+                                         " mm (-" + format_shortest(kFarthest) + " to " +
+                                         format_shortest(kFarthest) + ")");
     }
     value[i] = *number_here;
   }

@@ -14,8 +14,9 @@ namespace {
 constexpr int kLimitSteps = 128;
 // rad
 constexpr double kTiltTolerance = 1e-9;
-// rad: how far beyond an optimum its cause is looked for; in yaw as far as yaws are told apart.
-constexpr double kJustBelow = 1e-6, kJustBeside = 2e-4;
+// How far beyond an optimum its cause is looked for: rad of tilt; share of the way to the widest corner's
+// yaw, to begin with.
+constexpr double kJustBelow = 1e-6, kJustBeside = 2.5e-4;
 // rad: Goal::tilt_of by bisection.
 constexpr double kGoalTilt = 1e-6;
 // Scene and machine in turns: each turn raises the tilt by a step, so more turns than steps mean nothing.
@@ -57,18 +58,18 @@ double first_within(const Setting& setting, const CcPoint& at, double beta, doub
 
 Cause cause_beyond(const Setting& setting, const CcPoint& at, const Angles& best, const Relaxation& known,
                    Scene::Memory& memory) {
-  Angles beyond = best;
-  if (best.alpha - kJustBelow >= setting.range.alpha_lo) {
-    beyond.alpha -= kJustBelow;
-  } else {
-    const double middle = setting.range.widest().beta;
-    if (best.beta == middle) return Cause::bound;
-    const double step = std::min(kJustBeside, std::abs(best.beta - middle));
-    beyond.beta += best.beta < middle ? step : -step;
-  }
-  if (const auto place = known.blocked(beyond))
-    return setting.scene->body()[known.witness(*place).piece].cause;
-  const Cause cause = cause_at(setting, at, beyond, memory);
+  const auto cause_of = [&](const Angles& beyond) {
+    if (const auto place = known.blocked(beyond))
+      return setting.scene->body()[known.witness(*place).piece].cause;
+    return cause_at(setting, at, beyond, memory);
+  };
+  const double middle = setting.range.widest().beta, away = best.beta - middle;
+  Cause cause = Cause::none;
+  if (best.alpha - kJustBelow >= setting.range.alpha_lo)
+    cause = cause_of({best.alpha - kJustBelow, best.beta});
+  else
+    for (double share = kJustBeside; cause == Cause::none && away != 0 && share < 1; share *= 4)
+      cause = cause_of({best.alpha, best.beta - share * away});
   return cause == Cause::none ? Cause::bound : cause;
 }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "burin/base/parallel.h"
+
 namespace burin::orient {
 namespace {
 
@@ -41,22 +43,14 @@ CcPoint middle(const CcPoint& a, const CcPoint& b) {
   return m;
 }
 
+/// Of one path: its result depends on the path only.
 class Maker {
  public:
-  Maker(const Scene& scene, const MotionCheck& check, const std::vector<OrientedPath>& paths)
-      : scene_(scene), check_(check), paths_(paths) {
-    for (const OrientedPath& path : paths)
-      for (const OrientedPoint& point : path.points)
-        if (point.reachable) steepest_ = std::max(steepest_, point.angles.alpha);
-  }
+  Maker(const Scene& scene, const MotionCheck& check, double steepest)
+      : scene_(scene), check_(check), steepest_(steepest) {}
 
-  Runs run() {
-    std::size_t first = 0;
-    for (const OrientedPath& path : paths_) {
-      memory_ = {};  // a path's result depends on the path only
-      one(path, first);
-      first += path.points.size();
-    }
+  Runs run(const OrientedPath& path, std::size_t first) {
+    one(path, first);
     return std::move(out_);
   }
 
@@ -118,8 +112,7 @@ class Maker {
 
   const Scene& scene_;
   const MotionCheck& check_;
-  const std::vector<OrientedPath>& paths_;
-  double steepest_ = 0;
+  double steepest_;  ///< tilt of all points: beyond it nothing is sought
   std::uint32_t source_ = 0;
   MotionCheck::Memory memory_;
   Runs out_;
@@ -127,8 +120,25 @@ class Maker {
 
 }  // namespace
 
-Runs cutting_runs(const Scene& scene, const MotionCheck& check, const std::vector<OrientedPath>& paths) {
-  return Maker(scene, check, paths).run();
+Runs cutting_runs(const Scene& scene, const MotionCheck& check, const std::vector<OrientedPath>& paths,
+                  unsigned threads) {
+  double steepest = 0;
+  std::vector<std::size_t> first{0};
+  for (const OrientedPath& path : paths) {
+    first.push_back(first.back() + path.points.size());
+    for (const OrientedPoint& point : path.points)
+      if (point.reachable) steepest = std::max(steepest, point.angles.alpha);
+  }
+  std::vector<Runs> parts(paths.size());
+  parallel_for(paths.size(), thread_count(threads), [&](std::size_t i, std::size_t) {
+    parts[i] = Maker(scene, check, steepest).run(paths[i], first[i]);
+  });
+  Runs all;
+  for (Runs& part : parts) {
+    for (Run& run : part.runs) all.runs.push_back(std::move(run));
+    all.broken.insert(all.broken.end(), part.broken.begin(), part.broken.end());
+  }
+  return all;
 }
 
 }  // namespace burin::orient

@@ -23,7 +23,8 @@ struct Runs {
   std::vector<std::size_t> broken;  ///< points whose feed move to the next had to be given up
 };
 
-/// Unreachable points and the ends of paths end a run.
-Runs cutting_runs(const Scene& scene, const MotionCheck& check, const std::vector<OrientedPath>& paths);
+/// Unreachable points and the ends of paths end a run. One path is one task of `threads`.
+Runs cutting_runs(const Scene& scene, const MotionCheck& check, const std::vector<OrientedPath>& paths,
+                  unsigned threads);
 
 }  // namespace burin::orient

@@ -147,6 +147,18 @@ double Envelope::by_tilts(std::size_t j) const {
   return std::max(goal_.value(at_, {least, a.beta}), goal_.value(at_, {least, b.beta}));
 }
 
+/// A hump without a corner between j and j + 1: with one the samples beyond would bend less than those around
+/// it.
+bool Envelope::smooth(std::size_t j) const {
+  const double left = bend(nodes_[j - 1], nodes_[j], nodes_[j + 1]),
+               right = bend(nodes_[j], nodes_[j + 1], nodes_[j + 2]);
+  const auto alike = [](double a, double b) { return a < 0 && b < 0 && a > kSmooth * b && b > kSmooth * a; };
+  const bool beyond_left = j > 1 && exact(j - 2), beyond_right = exact(j + 3);
+  if (!alike(left, right) || (!beyond_left && !beyond_right)) return false;
+  return (!beyond_left || alike(left, bend(nodes_[j - 2], nodes_[j - 1], nodes_[j]))) &&
+         (!beyond_right || alike(right, bend(nodes_[j + 1], nodes_[j + 2], nodes_[j + 3])));
+}
+
 double Envelope::between(std::size_t j, double& beta) const {
   const Node &a = nodes_[j], &b = nodes_[j + 1];
   beta = (a.beta + b.beta) / 2;
@@ -157,17 +169,13 @@ double Envelope::between(std::size_t j, double& beta) const {
   const Node* before = j > 0 && exact(j - 1) ? &nodes_[j - 1] : nullptr;
   const Node* after = exact(j + 2) ? &nodes_[j + 2] : nullptr;
   const double base = std::max(a.value, b.value), width = b.beta - a.beta;
-  if (before && after) {
-    const double left = bend(*before, a, b), right = bend(a, b, *after);
-    if (left < 0 && right < 0 && left > kSmooth * right && right > kSmooth * left) {
-      // A smooth hump: the parabolas know it.
-      const Rise one = parabola(*before, a, b, a.beta, b.beta, base),
-                 two = parabola(a, b, *after, a.beta, b.beta, base);
-      const Rise& more = one.by > two.by ? one : two;
-      // Not at the samples themselves.
-      beta = std::clamp(more.at, a.beta + 0.1 * width, b.beta - 0.1 * width);
-      return std::min(most, base + kSmooth * std::max(more.by, 0.0));
-    }
+  if (before && after && smooth(j)) {
+    const Rise one = parabola(*before, a, b, a.beta, b.beta, base),
+               two = parabola(a, b, *after, a.beta, b.beta, base);
+    const Rise& more = one.by > two.by ? one : two;
+    // Not at the samples themselves.
+    beta = std::clamp(more.at, a.beta + 0.1 * width, b.beta - 0.1 * width);
+    return std::min(most, base + kSmooth * std::max(more.by, 0.0));
   }
   // A corner may stand between them: as high as the lines from either side go.
   const double rise_a = before ? std::max(0.0, (a.value - before->value) / (a.beta - before->beta)) : 0;

@@ -51,6 +51,7 @@ class Envelope {
   /// How great a value between nodes j and j + 1 may be: an estimate (docs/cspace.md); and at which yaw.
   double between(std::size_t j, double& beta) const;
   double by_tilts(std::size_t j) const;
+  bool smooth(std::size_t j) const;
   bool exact(std::size_t j) const { return j < nodes_.size() && nodes_[j].exact; }
 
   const Setting& setting_;

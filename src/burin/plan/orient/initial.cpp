@@ -118,7 +118,7 @@ Initial initial_solution(const Setting& setting, const CcPoint& at, Relaxation& 
   const std::array<double, 2> ends{low_first ? range.beta_lo : range.beta_hi,
                                    low_first ? range.beta_hi : range.beta_lo};
   for (const double end : ends) {
-    if (end == corner.beta && end != ends[0]) continue;
+    if (&end != ends.data() && (end == corner.beta || end == ends[0])) continue;
     const Initial found = first_on(StartCurve(range, end), setting, at, known, memory, causes);
     if (found.found) return found;
   }

@@ -23,6 +23,8 @@ using geom::Point3;
 constexpr int kCoarse = 13, kRounds = 6, kMendings = 24;
 /// Loads are planned for this share of what is allowed, so that small errors of the prediction do no harm.
 constexpr double kPlanned = 0.995;
+/// Another round is worth its lanes when it leaves at most this share of the paths.
+constexpr double kWorthwhile = 0.98;
 /// Places of w between two lanes that the density is worked out at.
 constexpr int kInner = 16;
 /// Lanes nearer than this are one.
@@ -283,6 +285,7 @@ double Prediction::sum_to(double w) const {
 }
 
 double Prediction::place_of(double sum) const {
+  if (!(sum_.back() > 0)) return 0.5;
   if (sum >= sum_.back()) return 1;
   const auto next = std::upper_bound(sum_.begin() + 1, sum_.end() - 1, sum);
   const auto i = static_cast<std::size_t>(next - sum_.begin()) - 1;
@@ -292,9 +295,10 @@ double Prediction::place_of(double sum) const {
 
 std::optional<std::vector<double>> Prediction::chain(double load, std::size_t most) const {
   // A border that bears nothing (nothing reachable, none abreast): half a step from it.
-  double w = before_ > 0 ? load / before_ : place_of(0.5 * load);
+  const double half = 0.5 * std::min(load, sum_.back());
+  double w = before_ > 0 ? load / before_ : place_of(half);
   std::vector<double> places{std::clamp(w, 0.0, 1.0)};
-  const double rest = behind_ > 0 ? load / behind_ : 1 - place_of(sum_.back() - 0.5 * load);
+  const double rest = behind_ > 0 ? load / behind_ : 1 - place_of(sum_.back() - half);
   while (places.back() < 1 - rest - kLeastStep) {
     if (places.size() >= most) return std::nullopt;
     w = place_of(sum_to(places.back()) + load);
@@ -382,6 +386,7 @@ Result<std::vector<double>> lay_paths(const PathFamily& family, const LanePlanne
     const auto next = most > 0 ? latest.places(best ? 1.0 : kPlanned, most) : std::nullopt;
     if (!next && !best) return too_many(max_paths);
     if (!next || *next == ws) break;
+    if (best && static_cast<double>(next->size()) > kWorthwhile * static_cast<double>(best->size())) break;
     survey.plan(*next);
     survey.keep(*next);
     ws = *next;

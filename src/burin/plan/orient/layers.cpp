@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 
 namespace burin::orient {
 namespace {
@@ -42,17 +43,24 @@ std::vector<std::size_t> cheapest_way(const std::vector<Layer>& layers, const st
     states[i].resize(which[i].size());
   }
   for (std::size_t s = 0; s < states[0].size(); ++s) states[0][s].cost = layers[0][which[0][s].first].loss;
+  std::vector<std::uint32_t> cheap_first;  // states of the layer before
   for (std::size_t i = 1; i < layers.size(); ++i) {
+    cheap_first.resize(states[i - 1].size());
+    std::iota(cheap_first.begin(), cheap_first.end(), 0U);
+    std::sort(cheap_first.begin(), cheap_first.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const double ca = states[i - 1][a].cost, cb = states[i - 1][b].cost;
+      return ca != cb ? ca < cb : a < b;
+    });
     for (std::size_t s = 0; s < states[i].size(); ++s) {
       const auto [c, b] = which[i][s];
       const Choice& to = layers[i][c];
       State& state = states[i][s];
-      for (std::size_t r = 0; r < states[i - 1].size(); ++r) {
+      for (const std::uint32_t r : cheap_first) {
         const double so_far = states[i - 1][r].cost;
-        if (so_far >= state.cost) continue;  // no edge costs less than nothing
+        if (so_far >= state.cost) break;  // no edge costs less than nothing
         const auto [from, from_branch] = which[i - 1][r];
         const double sum = so_far + edge_cost(cost, layers[i - 1][from], from_branch, to, b, ways[i - 1]);
-        if (sum < state.cost) state = {sum, static_cast<std::uint32_t>(r)};
+        if (sum < state.cost) state = {sum, r};
       }
       state.cost += to.loss;
     }

@@ -29,7 +29,7 @@ double edge_cost(const EdgeCost& cost, const Choice& a, int branch_a, const Choi
                  double way);
 
 /// The choice in each layer on the cheapest way through all; every layer has at least one. ways[i]: of the
-/// contact from layer i to i + 1. Of equal ways the one with the first choices.
+/// contact from layer i to i + 1.
 std::vector<std::size_t> cheapest_way(const std::vector<Layer>& layers, const std::vector<double>& ways,
                                       const EdgeCost& cost);
 

@@ -15,7 +15,7 @@ class MotionCheck {
  public:
   /// Share of the tolerance that a motion between two allowed poses may gouge beyond it: both often touch the
   /// bound of what is allowed, and no straight way between them keeps it exactly.
-  static constexpr double kSlackShare = 0.25;
+  static constexpr double kSlackShare = 0.05;
 
   /// One for each scene that is asked: they know their blockers by different numbers.
   struct Memory {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <optional>
+#include <utility>
 
 #include "burin/base/text.h"
 #include "burin/geom/mesh/mesh_index.h"
@@ -174,6 +176,48 @@ Result<void> plan_family(const PathFamily& family, int face, const PathTask& tas
   return {};
 }
 
+/// Points that are not reached, and the length that is cut.
+std::pair<std::size_t, double> worth(const std::vector<OrientedPath>& paths) {
+  std::pair<std::size_t, double> sum{0, 0};
+  for (const OrientedPath& path : paths)
+    for (std::size_t i = 0; i < path.points.size(); ++i) {
+      if (!path.points[i].reachable) ++sum.first;
+      if (i > 0) sum.second += distance(path.points[i - 1].cc.c, path.points[i].cc.c);
+    }
+  return sum;
+}
+
+/// Every way to count strips (docs/strip.md); the best is kept.
+Result<void> plan_strips(const PathFamily& family, int face, const PathTask& task, Workers& workers,
+                         ProgressSink* progress, OrientPlan& plan) {
+  const StripGoal whole(task.mill(), task.options->scallop_mm, StripCount::whole);
+  const RadiusGoal radius(task.mill());
+  std::vector<PathTask> ways{task, task};
+  ways[1].goal = &radius;
+  PathTask to_left = task, to_right = task;
+  to_left.goal = to_right.goal = &whole;
+  to_left.setting.range.beta_lo = std::max(0.0, task.setting.range.beta_lo);
+  to_right.setting.range.beta_hi = std::min(0.0, task.setting.range.beta_hi);
+  for (const PathTask& way : {to_left, to_right})
+    if (way.setting.range.beta_lo <= way.setting.range.beta_hi) ways.push_back(way);
+  std::optional<Error> error;
+  std::optional<OrientPlan> best;
+  for (const PathTask& way : ways) {
+    OrientPlan tried;
+    if (auto ok = plan_family(family, face, way, workers, progress, tried); !ok) {
+      error = ok.error();
+    } else if (!best || worth(tried.paths) < worth(best->paths)) {
+      best = std::move(tried);
+    }
+  }
+  if (!best) return *error;
+  for (OrientedPath& path : best->paths) {
+    path.number = static_cast<int>(plan.paths.size());
+    plan.paths.push_back(std::move(path));
+  }
+  return {};
+}
+
 void plan_contacts(const std::vector<CcPath>& contacts, const PathTask& task, Workers& workers,
                    ProgressSink* progress, OrientPlan& plan) {
   Counter counter(progress, contacts.size());
@@ -243,7 +287,7 @@ Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimit
   if (auto ok = validate(options); !ok) return ok.error();
   const model::Mill& mill = scene.mill();
   const RadiusGoal radius(mill);
-  const StripGoal strip(mill, options.scallop_mm);
+  const StripGoal strip(mill, options.scallop_mm, StripCount::narrower);
   PathTask task;
   task.setting = setting_of(scene, limits, options);
   task.options = &options;
@@ -278,8 +322,11 @@ Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimit
     return Error{ErrorCode::usage, "a mesh has no parameters to lay paths by (contacts = \"FILE.csv\")", {}};
   const auto run = [&](const PathTask& with, OrientPlan& out) -> Result<void> {
     for (std::size_t face = 0; face < families.size(); ++face) {
-      if (auto ok = plan_family(families[face], static_cast<int>(face), with, workers, progress, out); !ok)
-        return ok;
+      const auto number = static_cast<int>(face);
+      auto ok = with.options->objective == Objective::strip && with.options->search == Search::optimal
+                    ? plan_strips(families[face], number, with, workers, progress, out)
+                    : plan_family(families[face], number, with, workers, progress, out);
+      if (!ok) return ok;
       std::size_t points = 0;
       for (const OrientedPath& path : out.paths) points += path.points.size();
       if (points > options.max_points)

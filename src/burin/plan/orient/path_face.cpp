@@ -222,7 +222,8 @@ namespace {
 /// Nodes are put in for these shares of the chord and of the turn allowed (the spacing is then a third of
 /// what is allowed), so that leaving out finds good places.
 constexpr double kDenseChord = 0.1, kDenseTurn = 0.15, kSparse = 0.9;
-constexpr std::size_t kMostNodes = 400'000;
+/// One path; beyond this it becomes coarser than asked for.
+constexpr std::size_t kMostNodes = 100'000;
 constexpr int kMostHalvings = 20;
 
 double cosine_turn(double turn) {

@@ -93,6 +93,15 @@ Scene::Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPi
   State& s = *state_;
   s.mill = mill;
   s.body = std::move(body);
+  // Blocker numbers pieces in a byte: what is beyond (no tool has that) becomes one that holds them all.
+  constexpr std::size_t kMost = 255;
+  while (s.body.size() > kMost) {
+    const BodyPiece top = s.body.back();
+    s.body.pop_back();
+    BodyPiece& p = s.body.back();
+    p = {std::max(p.radius, top.radius), std::min(p.from, top.from), std::max(p.to, top.to),
+         std::max(p.grow, top.grow), p.cause};
+  }
   s.tree = detail::build_scene_tree(mesh);
   s.triangles = mesh.triangles.size();
   s.kernels = &detail::scene_kernels_avx2();

@@ -32,9 +32,9 @@ struct BodyPiece {
   Cause cause = Cause::gouge;
 };
 /// The cutting body less the tolerance (nothing of the part may be deeper inside), then the holder's pieces
-/// grown by the clearance. A flat end: radius R - tol from tol to length; a bull nose: radius R - r from r to
-/// length, grown by r - tol. Gouging pieces stand first. A tolerance of the whole body leaves no cutter
-/// piece.
+/// grown by the clearance. A flat end: radius R - tol from tol to length; a bull nose: the disc R - r at
+/// height r, grown by r - tol, and radius R - tol from r to length. Gouging pieces stand first. A tolerance
+/// of the whole body leaves no cutter piece.
 std::vector<BodyPiece> tool_body(const model::Mill& mill, double tolerance_mm, double clearance_mm);
 
 struct Blocker {
@@ -54,7 +54,7 @@ class Scene {
  public:
   /// Triangles of `mesh` (any soup; degenerate ones count as what they are: segments, points). Error-free:
   /// coordinates are checked where meshes are read. `mill` and `body` belong together (tool_body, or pieces
-  /// of a caller's own).
+  /// of a caller's own; from the 255th on they become one that holds them).
   Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPiece> body);
   ~Scene();
   Scene(Scene&&) noexcept;

@@ -26,8 +26,8 @@ constexpr double kOverspeed = 1000;
 constexpr double kRefine[] = {1.25 * kDegree, 0.3 * kDegree};
 constexpr int kRefineYaws = 5;
 // Sweeps that ease accelerations, to and fro; a change has to bring the share down by this much of itself.
-constexpr int kSweeps = 20;
-constexpr double kWorthwhile = 0.01;
+constexpr int kSweeps = 60;
+constexpr double kWorthwhile = 1e-3;
 
 /// A stretch of points that have allowed angles.
 class Stretch {
@@ -195,7 +195,7 @@ class Stretch {
     const Angles here = chosen_[i].angles;
     const Angles middle{0.5 * (before.alpha + after.alpha), 0.5 * (before.beta + after.beta)};
     Layer tries;
-    for (const double share : {0.5, 1.0}) {
+    for (const double share : {0.25, 0.5, 1.0}) {
       const Angles to{here.alpha + share * (middle.alpha - here.alpha),
                       here.beta + share * (middle.beta - here.beta)};
       add(tries, i, to);

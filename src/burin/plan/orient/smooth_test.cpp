@@ -177,7 +177,7 @@ TEST(Smooth, EasesAccelerations) {
   for (std::size_t i = 0; i < gate.points.size(); ++i) before.push_back(gate.at(i, gate.best[i].angles));
   model::Machine slow = *model::find_machine("xyzac-trunnion");
   for (model::Axis& axis : slow.axes)
-    if (axis.kind == model::AxisKind::rotary) axis.acceleration = 200;
+    if (axis.kind == model::AxisKind::rotary) axis.acceleration = 250;
   const Kinematics machine = *Kinematics::make(slow);
   SmoothOptions options;
   options.machine = &machine;
@@ -188,7 +188,7 @@ TEST(Smooth, EasesAccelerations) {
     ASSERT_EQ(cause_at(gate.setting, gate.points[i], path.points[i].angles, fresh), Cause::none) << i;
     after.push_back(gate.at(i, path.points[i].angles));
   }
-  EXPECT_GT(acceleration_share(machine, before, options.feed_mm_min), 3);
+  EXPECT_GT(acceleration_share(machine, before, options.feed_mm_min), 2);
   EXPECT_LE(acceleration_share(machine, after, options.feed_mm_min), 1 + 1e-9);
   EXPECT_NEAR(acceleration_share(machine, after, options.feed_mm_min), path.acceleration_share, 1e-9);
   EXPECT_LT(path.value_loss, 0.08);

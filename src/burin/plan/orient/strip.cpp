@@ -335,7 +335,8 @@ Strip ball_strip(const CcPoint& at, double ball_radius, double scallop_mm) {
 }
 
 double StripGoal::value(const CcPoint& at, const Angles& angles) const {
-  return strip_at(at, angles, *mill_, scallop_mm_).width();
+  const Strip strip = strip_at(at, angles, *mill_, scallop_mm_);
+  return count_ == StripCount::whole ? strip.width() : 2 * std::min(strip.left, strip.right);
 }
 
 }  // namespace burin::orient

@@ -18,15 +18,21 @@ Strip strip_at(const CcPoint& at, const Angles& angles, const model::Mill& mill,
 /// Of a ball of the radius (symmetric); 0 where the ball does not fit (k_tt >= 1 / radius).
 Strip ball_strip(const CcPoint& at, double ball_radius, double scallop_mm);
 
-/// strip_at(...).width(): objective = "strip".
+/// objective = "strip". What counts of a strip:
+/// narrower: twice the narrower side, what the neighbours can count on whatever way single points lean;
+/// whole: both sides together, which is right where all points lean the same way (yaws of one sign).
+enum class StripCount { narrower, whole };
+
 class StripGoal final : public Goal {
  public:
-  StripGoal(const model::Mill& mill, double scallop_mm) : mill_(&mill), scallop_mm_(scallop_mm) {}
+  StripGoal(const model::Mill& mill, double scallop_mm, StripCount count)
+      : mill_(&mill), scallop_mm_(scallop_mm), count_(count) {}
   double value(const CcPoint& at, const Angles& angles) const override;
 
  private:
   const model::Mill* mill_;
   double scallop_mm_;
+  StripCount count_;
 };
 
 }  // namespace burin::orient

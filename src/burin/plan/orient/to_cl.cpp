@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "burin/base/parallel.h"
 #include "burin/plan/orient/air_ways.h"
 
 namespace burin::orient {
@@ -102,15 +103,22 @@ Result<ToolPath> to_cl(const Part& part, const Scene& scene, const MachineLimits
     return Error{ErrorCode::range, "a feed or a safety distance that is negative or none (above 0)", {}};
   const MotionCheck check(part.mesh, scene, limits, 0.5 * options.safety_mm);
   const AirWays air(part.bounds, check, options.safety_mm);
-  Runs runs = cutting_runs(scene, check, paths);
+  Runs runs = cutting_runs(scene, check, paths, options.threads);
   Writer writer(options);
   writer.out().broken = std::move(runs.broken);
 
+  std::vector<std::optional<Way>> ins(runs.runs.size()), outs(runs.runs.size());
+  parallel_for(runs.runs.size(), thread_count(options.threads), [&](std::size_t i, std::size_t) {
+    ins[i] = air.out(runs.runs[i].front());
+    outs[i] = air.out(runs.runs[i].back());
+  });
   const Run* last = nullptr;  // the run the tool stands at the end of
   Way last_out;
-  for (const Run& run : runs.runs) {
+  for (std::size_t i = 0; i < runs.runs.size(); ++i) {
     // A run that the tool could not leave is not begun.
-    const auto in = air.out(run.front()), out = air.out(run.back());
+    const Run& run = runs.runs[i];
+    const std::optional<Way>& in = ins[i];
+    const std::optional<Way>& out = outs[i];
     std::optional<Way> way;
     bool lifted = false;
     if (in && out && last != nullptr) {

@@ -14,6 +14,7 @@ struct AirOptions {
   /// Feed of ways through the air; 0: rapids where the axis rests, five times the feed where it turns (what
   /// a rapid does with turning axes is the control's own affair).
   double air_mm_min = 0;
+  unsigned threads = 1;  ///< 0: as many as the machine has; the result is the same for any number
 };
 struct ToolPath {
   cl::Program program;  ///< record sources: index of the point over all paths, kNoSource for ways between

@@ -16,8 +16,8 @@ namespace {
 using geom::Vec3;
 
 constexpr double kTolerance = 0.02, kClearance = 0.5, kDegree = geom::kPi / 180;
-// As motion_check.h says: a quarter of the tolerance, and a tolerance between steps.
-constexpr double kBound = 2.25;
+// As motion_check.h says: a twentieth of the tolerance, and a tolerance between steps.
+constexpr double kBound = 2.05;
 
 struct Case {
   Part part;
