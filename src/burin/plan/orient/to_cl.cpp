@@ -127,7 +127,7 @@ Result<ToolPath> to_cl(const Part& part, const Scene& scene, const MachineLimits
                        const std::vector<OrientedPath>& paths, const AirOptions& options) {
   if (!(options.feed_mm_min > 0 && options.safety_mm >= 0 && options.air_mm_min >= 0))
     return Error{ErrorCode::range, "a feed or a safety distance that is negative or none (above 0)", {}};
-  const MotionCheck check(part.mesh, scene, limits, 0.5 * options.safety_mm);
+  const MotionCheck check(scene, limits, 0.5 * options.safety_mm);
   const AirWays air(part.bounds, check, options.safety_mm);
   Runs runs = cutting_runs(scene, check, paths, options.threads);
   Writer writer(options);
