@@ -122,6 +122,32 @@ void list_unreachable(const orient::OrientPlan& plan, Session& session) {
   }
 }
 
+/// Runs of reachable points that no clear way leads to: nothing is left out silently.
+void list_not_milled(const orient::OrientPlan& plan, const orient::ToolPath& tool_path, Session& session) {
+  std::vector<bool> stranded(plan.contact_points, false);
+  for (const std::size_t point : tool_path.stranded)
+    if (point < stranded.size()) stranded[point] = true;
+  std::size_t first = 0;  // of the path, over all paths
+  for (const orient::OrientedPath& path : plan.paths) {
+    const std::size_t count = path.points.size();
+    const auto lost = [&](std::size_t i) { return i < count && stranded[first + i]; };
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!lost(i)) continue;
+      const std::size_t begin = i;
+      while (lost(i + 1)) ++i;
+      const geom::Point3 at = path.points[begin].cc.c;
+      session.diagnostics.add({Severity::left_out,
+                               "not_milled",
+                               "path " + std::to_string(path.number) + ", points " + std::to_string(begin) +
+                                   " to " + std::to_string(i) +
+                                   " are not milled: no free way to them and back was found",
+                               {},
+                               std::array{at.x, at.y, at.z}});
+    }
+    first += count;
+  }
+}
+
 std::size_t unreachable_by(const orient::OrientPlan& plan, orient::Cause cause) {
   std::size_t count = 0;
   for (const orient::OrientedPath& path : plan.paths)
@@ -406,13 +432,7 @@ Result<void> make_motion(const OrientArgs& args, const OrientSetup& setup, const
   if (!path) return path.error();
   run.path = std::move(*path);
   run.path.program.name = fs::path(args.job).stem().string();
-  if (!run.path.stranded.empty())
-    session.diagnostics.add({Severity::left_out,
-                             "stranded",
-                             std::to_string(run.path.stranded.size()) +
-                                 " contact points are left out: the tool finds no clear way to them and back "
-                                 "(a longer tool, a slimmer holder, other paths)",
-                             {}});
+  list_not_milled(run.plan, run.path, session);
   if (!run.path.broken.empty())
     session.diagnostics.info("retracted",
                              std::to_string(run.path.broken.size()) +
