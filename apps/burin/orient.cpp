@@ -15,6 +15,7 @@
 #include "burin/view/orient_html.h"
 #include "cli.h"
 #include "commands.h"
+#include "joint_options.h"
 #include "orient_setup.h"
 
 namespace burin::cli {
@@ -283,9 +284,13 @@ void fill_report(const OrientSetup& setup, const OrientRun& run, const std::opti
               {"triangles", setup.part.mesh.triangles.size()},
               {"cl_points", run.path.program.move_count()},
               {"links", run.path.links},
-              {"stranded", run.path.stranded.size()},
-              {"broken", run.path.broken.size()}};
-  if (run.joints) r.counts["feed_limited"] = run.joints->feed_limited;
+              {"broken", run.path.broken.size()},
+              {"stranded", run.path.stranded.size()}};
+  if (run.joints) {
+    r.counts["inserted"] = run.joints->inserted;
+    r.counts["feed_limited"] = run.joints->feed_limited;
+    r.counts["acceleration_limited"] = run.joints->acceleration_limited;
+  }
   if (run.nc) r.counts["nc_blocks"] = run.nc->moves;
   r.quality = {{"rho_gain_mean", plan.gain_mean},
                {"rho_gain_per_path", plan.gain_per_path},
@@ -421,8 +426,9 @@ Result<void> make_motion(const OrientArgs& args, const OrientSetup& setup, const
                          const orient::MachineLimits& limits, const post::Dialect& dialect, bool want_nc,
                          OrientRun& run, Session& session) {
   const orient::OrientOptions& o = setup.file.options;
-  auto path = orient::to_cl(setup.part, scene, limits, run.plan.paths,
-                            {o.safety_mm, o.feed_mm_min, o.spindle_rpm, 0});
+  auto path = orient::to_cl(
+      setup.part, scene, limits, run.plan.paths,
+      {o.safety_mm, o.feed_mm_min, o.spindle_rpm, 0, static_cast<unsigned>(session.common.threads)});
   if (!path) return path.error();
   run.path = std::move(*path);
   run.path.program.name = fs::path(args.job).stem().string();
@@ -438,13 +444,12 @@ Result<void> make_motion(const OrientArgs& args, const OrientSetup& setup, const
   }
   kinematics::JointPathOptions joints;
   joints.tolerance_mm = kJointShare * o.tolerance_mm;
+  joints.tool_centre = args.tcp;
+  joints.keep_acceleration = o.smooth;
   auto joint_path = kinematics::make_joint_path(*setup.machine, run.path.program, joints);
   if (!joint_path) return joint_path.error();
   run.joints = std::move(*joint_path);
-  if (run.joints->feed_limited > 0)
-    session.diagnostics.info("feed_limited",
-                             std::to_string(run.joints->feed_limited) +
-                                 " moves are slower than the feed: an axis is at its speed limit");
+  report_joints(*run.joints, session);
   if (!want_nc) return {};
   post::JointEmitOptions emit;
   emit.write_z = true;

@@ -16,6 +16,7 @@ using geom::Vec3;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr double kCrease = 0.8;   ///< cosine of the angle between triangles that are drawn with an edge
+constexpr double kSmooth = 0.02;  ///< vertices less sharp than this are all alike
 constexpr std::size_t kFan = 64;  ///< a vertex with more triangles (the hub of a fan) is drawn flat
 
 Vec3 normal_of(const geom::Mesh& mesh, const Triangle& t) {
@@ -23,7 +24,8 @@ Vec3 normal_of(const geom::Mesh& mesh, const Triangle& t) {
   return cross(mesh.vertices[t[1]] - a, mesh.vertices[t[2]] - a);
 }
 
-/// Vertices put together by cells of a grid: each cell is drawn at the vertex with the sharpest edge in it.
+/// Vertices put together by cells of a grid and the side they look to (a thin wall keeps both): each cell is
+/// drawn at the vertex with the sharpest edge in it, without one at the vertex next to its middle.
 class Clusters {
  public:
   Clusters(const geom::Mesh& mesh, std::size_t first, std::size_t end, Point3 corner, double cell)
@@ -36,15 +38,17 @@ class Clusters {
       for (const std::uint32_t v : mesh.triangles[i]) sum[v] = sum[v] + area, weight[v] += norm(area);
     }
     std::unordered_map<std::uint64_t, std::uint32_t> seen;  // only looked up, never walked
-    std::vector<double> sharpest;
+    std::vector<std::pair<double, double>> best;            // sharpness, distance from the middle of the cell
     for (std::size_t v = 0; v < n; ++v) {
       if (!(weight[v] > 0)) continue;
       const auto [at, fresh] =
-          seen.try_emplace(key(mesh.vertices[v]), static_cast<std::uint32_t>(points.size()));
-      const double sharp = 1 - norm(sum[v]) / weight[v];
-      if (fresh) points.push_back(mesh.vertices[v]), sharpest.push_back(sharp);
-      if (sharp > sharpest[at->second] + 1e-6)
-        sharpest[at->second] = sharp, points[at->second] = mesh.vertices[v];
+          seen.try_emplace(key(mesh.vertices[v], sum[v]), static_cast<std::uint32_t>(points.size()));
+      const double sharp = std::max(1 - norm(sum[v]) / weight[v], kSmooth),
+                   off = from_middle(mesh.vertices[v]);
+      if (fresh) points.push_back(mesh.vertices[v]), best.push_back({sharp, off});
+      auto& [sharpest, nearest] = best[at->second];
+      if (sharp > sharpest || (sharp == sharpest && off < nearest))
+        sharpest = sharp, nearest = off, points[at->second] = mesh.vertices[v];
       cell_of_[v] = at->second;
     }
   }
@@ -59,11 +63,20 @@ class Clusters {
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  std::uint64_t key(Point3 p) const {
+  std::uint64_t key(Point3 p, Vec3 side) const {
     const auto part = [this](double v) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / cell_))) & 0x1fffffu;
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / cell_))) & 0xfffffu;
     };
-    return part(p.x - corner_.x) << 42 | part(p.y - corner_.y) << 21 | part(p.z - corner_.z);
+    // The greatest component of the normal and its sign: six sides.
+    const double x = std::abs(side.x), y = std::abs(side.y), z = std::abs(side.z);
+    const double most = x >= y && x >= z ? side.x : y >= z ? side.y : side.z;
+    const std::uint64_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    return (2 * axis + (most < 0 ? 1 : 0)) << 60 | part(p.x - corner_.x) << 40 | part(p.y - corner_.y) << 20 |
+           part(p.z - corner_.z);
+  }
+  double from_middle(Point3 p) const {
+    const auto off = [this](double v) { return v / cell_ - std::floor(v / cell_) - 0.5; };
+    return norm(Vec3{off(p.x - corner_.x), off(p.y - corner_.y), off(p.z - corner_.z)});
   }
   Point3 corner_;
   double cell_;
@@ -104,7 +117,7 @@ ReducedMesh reduced(const geom::Mesh& mesh, std::size_t first, std::size_t end, 
     area += norm(normal_of(mesh, mesh.triangles[i])) / 2;
   }
   const double wanted = std::sqrt(area / static_cast<double>(std::max<std::size_t>(1, max_triangles)));
-  // A cell's number along an axis has 21 bits; without area nothing is drawn.
+  // A cell's number along an axis has 20 bits; without area nothing is drawn.
   const double least = norm(box.hi - box.lo) / (1 << 18);
   double cell = std::max({wanted, least, std::numeric_limits<double>::min()});
   for (;; cell *= 1.25) {
@@ -113,7 +126,7 @@ ReducedMesh reduced(const geom::Mesh& mesh, std::size_t first, std::size_t end, 
   }
 }
 
-Shape shaded(const geom::Mesh& mesh) {
+Shape shaded(const geom::Mesh& mesh, const ReducedMesh& reduced) {
   std::vector<Vec3> area;
   std::vector<std::uint32_t> start(mesh.vertices.size() + 1, 0), about(3 * mesh.triangles.size());
   for (const Triangle& t : mesh.triangles) {
@@ -125,9 +138,10 @@ Shape shaded(const geom::Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (const std::uint32_t v : mesh.triangles[i]) about[next[v]++] = static_cast<std::uint32_t>(i);
   Shape shape;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Vec3 flat = unit(area[i]);
-    for (const std::uint32_t v : mesh.triangles[i]) {
+  for (std::size_t i = 0; i < reduced.source.size(); ++i) {
+    const Vec3 flat = unit(area[reduced.source[i]]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t v = mesh.triangles[reduced.source[i]][c];
       Vec3 sum{};
       if (start[v + 1] - start[v] <= kFan) {
         for (std::uint32_t k = start[v]; k < start[v + 1]; ++k) {
@@ -136,7 +150,7 @@ Shape shaded(const geom::Mesh& mesh) {
         }
       }
       const double length = norm(sum);
-      shape.points.push_back(mesh.vertices[v]);
+      shape.points.push_back(reduced.mesh.vertices[reduced.mesh.triangles[i][c]]);
       shape.normals.push_back(length > 0 ? sum / length : flat);
     }
   }

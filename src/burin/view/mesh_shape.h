@@ -26,7 +26,8 @@ struct ReducedMesh {
 /// each other are put together (edges keep their own vertices).
 ReducedMesh reduced(const geom::Mesh& mesh, std::size_t first, std::size_t end, std::size_t max_triangles);
 
-/// Normals of the corners: means over the triangles about a vertex that meet below the angle of a crease.
-Shape shaded(const geom::Mesh& mesh);
+/// The reduced mesh with the normals of the whole one: each corner has the mean over the triangles about the
+/// vertex it came from that meet its own below the angle of a crease.
+Shape shaded(const geom::Mesh& mesh, const ReducedMesh& reduced);
 
 }  // namespace burin::view

@@ -26,13 +26,15 @@ constexpr std::size_t kMapBytes = 1'500'000;
 constexpr std::size_t kMapNodes = 65'536;  ///< of one map
 constexpr std::size_t kMapOverhead = 140;  ///< bytes beside the nodes, those of its point included
 
+/// Share of the tool's radius below which an initial solution (yaw 90 degrees) has none to compare with.
+constexpr double kNoRadius = 1e-6;
 constexpr std::uint8_t kReachable = 1, kInitialFound = 2;
 constexpr int kCauseShift = 2;
 
 // --- the part
 
 json mesh_json(const orient::Part& part, std::size_t first, std::size_t end, std::size_t most) {
-  return shape_json(shaded(reduced(part.mesh, first, end, most).mesh), end - first);
+  return shape_json(shaded(part.mesh, reduced(part.mesh, first, end, most)), end - first);
 }
 
 // --- maps that are shown
@@ -128,7 +130,7 @@ json points_json(const OrientPicture& picture, const Kept& kept) {
 struct PathFigures {
   std::size_t reached = 0, both = 0;
   double rho = 0, initial = 0, tests = 0, length = 0;  ///< rho: mean over the points that have both
-  explicit PathFigures(const orient::OrientedPath& path) {
+  PathFigures(const orient::OrientedPath& path, double tool_radius) {
     const OrientedPoint* last = nullptr;
     for (const OrientedPoint& p : path.points) {
       tests += p.tests;
@@ -137,6 +139,7 @@ struct PathFigures {
       if (!p.reachable) continue;
       ++reached;
       if (!p.initial_found || !std::isfinite(p.rho) || !std::isfinite(p.rho_initial)) continue;
+      if (p.rho_initial < kNoRadius * tool_radius) continue;
       ++both;
       rho += p.rho, initial += p.rho_initial;
     }
@@ -153,7 +156,7 @@ json paths_json(const OrientPicture& picture, const Kept& kept) {
   std::vector<float> figures;
   for (std::size_t i = 0; i < kept.points.size(); ++i) {
     const orient::OrientedPath& path = picture.plan->paths[i];
-    const PathFigures f(path);
+    const PathFigures f(path, picture.mill->radius);
     for (const std::size_t v : {kept.points[i].size(), path.points.size(), f.reached, f.both})
       ids.push_back(static_cast<std::int32_t>(v));
     ids.push_back(path.number);
@@ -217,7 +220,8 @@ json options_json(const orient::OrientOptions& o) {
                                                          : "optimal"},
           {"smooth", o.smooth},
           {"scallop", o.scallop_mm},
-          {"feed", o.feed_mm_min}};
+          {"feed", o.feed_mm_min},
+          {"laid", !o.path_count && !o.side_step_mm}};
 }
 
 /// The program itself first; {name, possible, tilt, radius, unreachable, paths, cut, minutes}.

@@ -97,11 +97,12 @@ TEST(OrientHtml, PathsHaveTheMeansOfAllTheirPoints) {
 }
 
 /// The points of the maps on the page, as indices over all points of the plan.
-void expect_maps(const WavyFace& face, const nlohmann::json& data, std::size_t least) {
+void expect_maps(const WavyFace& face, const nlohmann::json& data, std::size_t least, std::size_t every) {
   const auto ids = numbers<std::int32_t>(data["paths"]["ids"]);
   const auto index = numbers<std::uint32_t>(data["points"]["index"]);
   ASSERT_GE(data["maps"].size(), least);
-  for (const auto& m : data["maps"]) {
+  for (std::size_t n = 0; n < data["maps"].size(); n += every) {
+    const auto& m = data["maps"][n];
     const std::size_t at = m[0];
     std::size_t path = 0, first = 0;
     while (at >= first + static_cast<std::size_t>(ids[6 * path]))
@@ -129,11 +130,11 @@ TEST(OrientHtml, MapsComeBackNodeByNode) {
   const WavyFace face;
   const auto data = data_of(orient_html(face.picture()));
   EXPECT_EQ(data["maps"].size(), face.maps.size());
-  expect_maps(face, data, 1);
+  expect_maps(face, data, 1, 1);
 }
 
 TEST(OrientHtml, StaysBelowNineMegabytes) {
-  const WavyFace face(400, 100, 1000, 10, 33);
+  const WavyFace face(300, 100, 1000, 20, 33);
   OrientPicture picture = face.picture();
   picture.nc_text = std::string(3'000'000, '\n');
   const std::string page = orient_html(picture);
@@ -143,8 +144,8 @@ TEST(OrientHtml, StaysBelowNineMegabytes) {
   EXPECT_LE(data["points"]["n"].get<int>(), 50'000);
   EXPECT_LE(data["design"]["triangles"].get<int>(), 30'000);
   EXPECT_GE(data["design"]["triangles"].get<int>(), 10'000);
-  EXPECT_EQ(data["mapCount"], 10'000);
-  expect_maps(face, data, 2'000);
+  EXPECT_EQ(data["mapCount"], 5'000);
+  expect_maps(face, data, 2'000, 97);
 }
 
 TEST(OrientHtml, SamePictureSameBytes) {
@@ -198,7 +199,7 @@ TEST(MeshShape, ReducedMeshesStayNearAndHaveNoMoreThanAskedFor) {
 TEST(MeshShape, SmoothFacesAreShadedSmoothAndEdgesStaySharp) {
   const WavyFace face(60);
   const std::size_t design = face.part.design_triangles;
-  const Shape smooth = shaded(reduced(face.part.mesh, 0, design, 1'000'000).mesh);
+  const Shape smooth = shaded(face.part.mesh, reduced(face.part.mesh, 0, design, 1'000'000));
   ASSERT_EQ(smooth.points.size(), 3 * design);
   for (std::size_t i = 0; i < smooth.points.size(); i += 5) {
     const geom::Point3 p = smooth.points[i];
@@ -209,7 +210,7 @@ TEST(MeshShape, SmoothFacesAreShadedSmoothAndEdgesStaySharp) {
                         -(WavyFace::height(p.x, p.y + h) - WavyFace::height(p.x, p.y - h)) / (2 * h), 1});
     EXPECT_GT(dot(smooth.normals[i], n), 0.999);
   }
-  const Shape wall = shaded(reduced(face.part.mesh, design, design + 12, 100).mesh);
+  const Shape wall = shaded(face.part.mesh, reduced(face.part.mesh, design, design + 12, 100));
   for (const geom::Vec3 n : wall.normals)
     EXPECT_NEAR(std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)}), 1, 1e-12);
 }

@@ -44,13 +44,12 @@ double lever_of(const BodyPiece& piece) {
 
 }  // namespace
 
-MotionCheck::MotionCheck(const geom::Mesh& mesh, const Scene& scene, const MachineLimits& limits,
-                         double air_mm)
+MotionCheck::MotionCheck(const Scene& scene, const MachineLimits& limits, double air_mm)
     : scene_(&scene),
       limits_(&limits),
-      slack_(mesh, scene.mill(), shrunk(scene.body(), kSlackShare * tolerance_of(scene))),
+      slack_(scene, shrunk(scene.body(), kSlackShare * tolerance_of(scene))),
       air_mm_(air_mm) {
-  if (air_mm > 0) air_.emplace(mesh, scene.mill(), grown(scene.body(), air_mm));
+  if (air_mm > 0) air_.emplace(scene, grown(scene.body(), air_mm));
   double clearance = std::numeric_limits<double>::infinity();
   for (const BodyPiece& piece : scene.body()) {
     lever_ = std::max(lever_, lever_of(piece));

@@ -24,7 +24,7 @@ class MotionCheck {
 
   /// `air_mm`: how far off everything the tool can be expected to be on ways through the air (a larger step
   /// there); 0: no expectation. Keeps scene and limits.
-  MotionCheck(const geom::Mesh& mesh, const Scene& scene, const MachineLimits& limits, double air_mm);
+  MotionCheck(const Scene& scene, const MachineLimits& limits, double air_mm);
 
   /// Cutting: free at every step but for the slack; between steps no point of the cutter moves by more than
   /// the tolerance from one of them, none of the holder by more than half the clearance.

@@ -62,18 +62,20 @@ struct Scene::State {
   std::vector<BodyPiece> body;
   std::vector<Piece> pieces;
   std::size_t gouging = 0;  ///< pieces before this one gouge
-  detail::SceneTree tree;
+  std::shared_ptr<const detail::SceneTree> tree;
   std::size_t triangles = 0;
+  double touch = 0;  ///< a touch within this is none
   const detail::SceneKernels* kernels = nullptr;
   std::vector<detail::SceneQuery> queries;  ///< the pieces, kScenePieces each; tip and axis to be filled in
 
   std::array<Point3, 3> corners(std::uint32_t triangle) const {
-    const std::uint32_t place = tree.place[triangle];
-    return tree.packets[place / 4].corners(static_cast<int>(place % 4));
+    const std::uint32_t place = tree->place[triangle];
+    return tree->packets[place / 4].corners(static_cast<int>(place % 4));
   }
   bool blocks(const Blocker& b, const Frame& frame) const {
     return meets(frame.at(corners(b.triangle)), pieces[b.piece]);
   }
+  void take(std::vector<BodyPiece> wanted);
   void add_queries();
   detail::SceneQuery query(std::size_t batch, const Aim& aim) const;
   template <class Met>
@@ -92,31 +94,44 @@ Scene::Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPi
     : state_(std::make_unique<State>()) {
   State& s = *state_;
   s.mill = mill;
-  s.body = std::move(body);
-  // Blocker numbers pieces in a byte: what is beyond (no tool has that) becomes one that holds them all.
-  constexpr std::size_t kMost = 255;
-  while (s.body.size() > kMost) {
-    const BodyPiece top = s.body.back();
-    s.body.pop_back();
-    BodyPiece& p = s.body.back();
-    p = {std::max(p.radius, top.radius), std::min(p.from, top.from), std::max(p.to, top.to),
-         std::max(p.grow, top.grow), p.cause};
-  }
-  s.tree = detail::build_scene_tree(mesh);
+  s.tree = std::make_shared<const detail::SceneTree>(detail::build_scene_tree(mesh));
   s.triangles = mesh.triangles.size();
-  s.kernels = &detail::scene_kernels_avx2();
   double scale = 1000;
   for (const Point3& q : mesh.vertices)
     scale = std::max({scale, std::abs(q.x), std::abs(q.y), std::abs(q.z)});
-  const double touch = kTouch * scale;
-  while (s.gouging < s.body.size() && s.body[s.gouging].cause == Cause::gouge) ++s.gouging;
-  for (const BodyPiece& p : s.body) {
-    if (p.grow > touch)
-      s.pieces.push_back({p.radius, p.from, p.to, p.grow - touch});
-    else
-      s.pieces.push_back({p.radius - touch, p.from + touch, p.to - touch, 0});
+  s.touch = kTouch * scale;
+  s.take(std::move(body));
+}
+
+Scene::Scene(const Scene& same_part, std::vector<BodyPiece> body) : state_(std::make_unique<State>()) {
+  State& s = *state_;
+  s.mill = same_part.state_->mill;
+  s.tree = same_part.state_->tree;
+  s.triangles = same_part.state_->triangles;
+  s.touch = same_part.state_->touch;
+  s.take(std::move(body));
+}
+
+void Scene::State::take(std::vector<BodyPiece> wanted) {
+  body = std::move(wanted);
+  // Blocker numbers pieces in a byte: what is beyond (no tool has that) becomes one that holds them all.
+  constexpr std::size_t kMost = 255;
+  while (body.size() > kMost) {
+    const BodyPiece top = body.back();
+    body.pop_back();
+    BodyPiece& p = body.back();
+    p = {std::max(p.radius, top.radius), std::min(p.from, top.from), std::max(p.to, top.to),
+         std::max(p.grow, top.grow), p.cause};
   }
-  s.add_queries();
+  kernels = &detail::scene_kernels_avx2();
+  while (gouging < body.size() && body[gouging].cause == Cause::gouge) ++gouging;
+  for (const BodyPiece& p : body) {
+    if (p.grow > touch)
+      pieces.push_back({p.radius, p.from, p.to, p.grow - touch});
+    else
+      pieces.push_back({p.radius - touch, p.from + touch, p.to - touch, 0});
+  }
+  add_queries();
 }
 
 void Scene::State::add_queries() {
@@ -206,11 +221,11 @@ bool Scene::State::walk(std::size_t batch, unsigned mask, Aim& aim, const Met& m
   while (n > 0) {
     const Task task = todo[--n];
     if (task.child < 0) {
-      if (look_at(tree.packets[static_cast<std::size_t>(~task.child)], batch, task.pieces, aim, met))
+      if (look_at(tree->packets[static_cast<std::size_t>(~task.child)], batch, task.pieces, aim, met))
         return true;
       continue;
     }
-    const detail::SceneNode& node = tree.nodes[static_cast<std::size_t>(task.child)];
+    const detail::SceneNode& node = tree->nodes[static_cast<std::size_t>(task.child)];
     detail::SceneHits hits;
     kernels->boxes(node, q, task.pieces, hits);
     unsigned any = 0;
@@ -249,12 +264,12 @@ bool Scene::State::climb(std::size_t batch, unsigned mask, Aim& aim, const Met& 
     const Task task = todo[--n];
     if (task.child < 0) {
       const double before = aim.alpha;
-      if (look_at(tree.packets[static_cast<std::size_t>(~task.child)], batch, task.pieces, aim, met))
+      if (look_at(tree->packets[static_cast<std::size_t>(~task.child)], batch, task.pieces, aim, met))
         return true;
       if (aim.alpha != before) q = query(batch, aim);
       continue;
     }
-    const detail::SceneNode& node = tree.nodes[static_cast<std::size_t>(task.child)];
+    const detail::SceneNode& node = tree->nodes[static_cast<std::size_t>(task.child)];
     detail::SceneHits hits;
     kernels->turning(node, q, task.pieces, hits);
     unsigned any = 0;
@@ -273,7 +288,7 @@ bool Scene::State::climb(std::size_t batch, unsigned mask, Aim& aim, const Met& 
 /// climb() with all batches.
 template <class Met>
 bool Scene::State::climb_all(Aim& aim, const Met& met) const {
-  for (std::size_t batch = 0; batch < queries.size() && !tree.nodes.empty(); ++batch)
+  for (std::size_t batch = 0; batch < queries.size() && !tree->nodes.empty(); ++batch)
     if (climb(batch, (1U << static_cast<unsigned>(queries[batch].count)) - 1, aim, met)) return true;
   return false;
 }
@@ -283,7 +298,7 @@ std::optional<Blocker> Scene::State::blocker(const Frame& frame, std::size_t cou
   ++memory.tests;
   for (int i = 0; i < memory.count; ++i) {
     const Blocker b = memory.last[static_cast<std::size_t>(i)];
-    if (b.triangle >= triangles || tree.place[b.triangle] == detail::kNoPlace || b.piece >= count ||
+    if (b.triangle >= triangles || tree->place[b.triangle] == detail::kNoPlace || b.piece >= count ||
         !blocks(b, frame))
       continue;
     remember(b, memory);
@@ -295,7 +310,7 @@ std::optional<Blocker> Scene::State::blocker(const Frame& frame, std::size_t cou
     out = b;
     return true;
   };
-  for (std::size_t batch = 0; batch * detail::kScenePieces < count && !tree.nodes.empty() && !out; ++batch) {
+  for (std::size_t batch = 0; batch * detail::kScenePieces < count && !tree->nodes.empty() && !out; ++batch) {
     const std::size_t n = std::min<std::size_t>(count - batch * detail::kScenePieces, detail::kScenePieces);
     walk(batch, (1U << n) - 1, aim, met);
   }

@@ -56,6 +56,8 @@ class Scene {
   /// coordinates are checked where meshes are read. `mill` and `body` belong together (tool_body, or pieces
   /// of a caller's own; from the 255th on they become one that holds them).
   Scene(const geom::Mesh& mesh, const model::Mill& mill, std::vector<BodyPiece> body);
+  /// The same triangles and mill with another body; shares the tree.
+  Scene(const Scene& same_part, std::vector<BodyPiece> body);
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;

@@ -115,7 +115,7 @@ inline double outside(const Point3& q, const cl::Pose& pose, const BodyPiece& p)
 /// long.
 inline int decide(const std::array<Point3, 3>& triangle, const cl::Pose& pose, const BodyPiece& piece,
                   double band) {
-  int left = 20000;
+  int left = 3000;
   bool close = false;
   std::vector<std::array<Point3, 3>> todo{triangle};
   while (!todo.empty()) {

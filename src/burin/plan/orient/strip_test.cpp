@@ -271,13 +271,14 @@ TEST(Strip, DoesNotGrowWithTheTilt) {
     // Every third feed is straight.
     if (i % 3 != 0) at.k_ff = random(-0.5, 0.2) / mill.radius, at.k_ft = random(-0.2, 0.2) / mill.radius;
     const double beta = random(-90, 90) * kDegree, h = std::pow(10, random(-3, -0.5));
-    const StripGoal goal(mill, h);
+    const StripGoal narrower(mill, h, StripCount::narrower), whole(mill, h, StripCount::whole);
     double before = 1e300;
     for (int k = 0; k <= 20; ++k) {
       const Angles angles{(1 + 29 * k / 20.0) * kDegree, beta};
       const Strip strip = strip_at(at, angles, mill, h);
       const double now = strip.width();
-      EXPECT_EQ(goal.value(at, angles), 2 * std::min(strip.left, strip.right));
+      EXPECT_EQ(narrower.value(at, angles), 2 * std::min(strip.left, strip.right));
+      EXPECT_EQ(whole.value(at, angles), now);
       if (depth(mill, at, angles, strip) > (i % 3 != 0 ? 0.2 * h : 0.0)) {
         before = 1e300;
         continue;

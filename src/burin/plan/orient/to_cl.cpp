@@ -15,6 +15,27 @@ constexpr double kAirFeed = 5;
 // Axes that differ by less rest.
 constexpr double kResting = 1e-9;
 
+Way reversed(const Way& way, const cl::Pose& end) {
+  Way back(way.rbegin() + 1, way.rend());
+  back.push_back(end);
+  return back;
+}
+
+/// From an end of a run into the open: along the run itself, whose moves are proven either way round, to the
+/// nearest place from which there is a way out (0: the end itself).
+struct Exit {
+  std::size_t along = 0;
+  Way out;
+};
+std::optional<Exit> exit_of(const AirWays& air, const Run& run, bool from_front) {
+  // Places that are tried along a run.
+  constexpr std::size_t kTries = 40;
+  const std::size_t step = std::max<std::size_t>(1, run.size() / kTries);
+  for (std::size_t k = 0; k < run.size(); k += step)
+    if (auto way = air.out(from_front ? run[k] : run[run.size() - 1 - k])) return Exit{k, std::move(*way)};
+  return std::nullopt;
+}
+
 class Writer {
  public:
   explicit Writer(const AirOptions& options) : options_(options) {
@@ -57,6 +78,17 @@ class Writer {
     }
   }
 
+  /// From the end of a run into the open, and from there to the begin of one.
+  void leave(const Run& run, const Exit& exit) {
+    for (std::size_t k = 1; k <= exit.along; ++k)
+      out_.link_mm += feed(run[run.size() - 1 - k].pose, options_.feed_mm_min);
+    fly(exit.out, true, false);
+  }
+  void enter(const Run& run, const Exit& exit) {
+    fly(reversed(exit.out, run[exit.along].pose), false, true);
+    for (std::size_t k = exit.along; k-- > 0;) out_.link_mm += feed(run[k].pose, options_.feed_mm_min);
+  }
+
   ToolPath take() {
     if (options_.spindle_rpm > 0) out_.program.add(cl::Spindle{});
     return std::move(out_);
@@ -89,65 +121,57 @@ class Writer {
   ToolPath out_;
 };
 
-Way reversed(const Way& way, const cl::Pose& end) {
-  Way back(way.rbegin() + 1, way.rend());
-  back.push_back(end);
-  return back;
-}
-
 }  // namespace
 
 Result<ToolPath> to_cl(const Part& part, const Scene& scene, const MachineLimits& limits,
                        const std::vector<OrientedPath>& paths, const AirOptions& options) {
   if (!(options.feed_mm_min > 0 && options.safety_mm >= 0 && options.air_mm_min >= 0))
     return Error{ErrorCode::range, "a feed or a safety distance that is negative or none (above 0)", {}};
-  const MotionCheck check(part.mesh, scene, limits, 0.5 * options.safety_mm);
+  const MotionCheck check(scene, limits, 0.5 * options.safety_mm);
   const AirWays air(part.bounds, check, options.safety_mm);
   Runs runs = cutting_runs(scene, check, paths, options.threads);
   Writer writer(options);
   writer.out().broken = std::move(runs.broken);
 
-  std::vector<std::optional<Way>> ins(runs.runs.size()), outs(runs.runs.size());
+  std::vector<std::optional<Exit>> ins(runs.runs.size()), outs(runs.runs.size());
   parallel_for(runs.runs.size(), thread_count(options.threads), [&](std::size_t i, std::size_t) {
-    ins[i] = air.out(runs.runs[i].front());
-    outs[i] = air.out(runs.runs[i].back());
+    ins[i] = exit_of(air, runs.runs[i], true);
+    if (ins[i]) outs[i] = exit_of(air, runs.runs[i], false);
   });
   const Run* last = nullptr;  // the run the tool stands at the end of
-  Way last_out;
+  const Exit* last_out = nullptr;
   for (std::size_t i = 0; i < runs.runs.size(); ++i) {
     // A run that the tool could not leave is not begun.
     const Run& run = runs.runs[i];
-    const std::optional<Way>& in = ins[i];
-    const std::optional<Way>& out = outs[i];
     std::optional<Way> way;
     bool lifted = false;
-    if (in && out && last != nullptr) {
+    if (ins[i] && outs[i] && last != nullptr) {
       way = air.across(last->back(), run.front());
-      if (!way) way = air.over(last_out.back(), in->back()), lifted = true;
+      if (!way) way = air.over(last_out->out.back(), ins[i]->out.back()), lifted = true;
     }
-    if (!in || !out || (last != nullptr && !way)) {
+    if (!ins[i] || !outs[i] || (last != nullptr && !way)) {
       for (const RunPoint& point : run)
         if (writer.out().stranded.empty() || writer.out().stranded.back() != point.source)
           writer.out().stranded.push_back(point.source);
       continue;
     }
-    const Way down = reversed(*in, run.front().pose);
-    if (last == nullptr) {
-      writer.begin(in->back());
-      writer.fly(down, false, true);
-    } else if (lifted) {
-      writer.fly(last_out, true, false);
-      writer.fly(*way, false, false);
-      writer.fly(down, false, true);
-    } else {
+    if (last != nullptr && !lifted) {
       writer.fly(*way, true, true);
+    } else {
+      if (last == nullptr) {
+        writer.begin(ins[i]->out.back());
+      } else {
+        writer.leave(*last, *last_out);
+        writer.fly(*way, false, false);
+      }
+      writer.enter(run, *ins[i]);
     }
     if (last != nullptr) ++writer.out().links;
     writer.cut(run);
     last = &run;
-    last_out = *out;
+    last_out = &*outs[i];
   }
-  if (last != nullptr) writer.fly(last_out, true, false);
+  if (last != nullptr) writer.leave(*last, *last_out);
   return writer.take();
 }
 
