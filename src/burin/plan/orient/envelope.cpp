@@ -153,10 +153,9 @@ bool Envelope::smooth(std::size_t j) const {
   const double left = bend(nodes_[j - 1], nodes_[j], nodes_[j + 1]),
                right = bend(nodes_[j], nodes_[j + 1], nodes_[j + 2]);
   const auto alike = [](double a, double b) { return a < 0 && b < 0 && a > kSmooth * b && b > kSmooth * a; };
-  const bool beyond_left = j > 1 && exact(j - 2), beyond_right = exact(j + 3);
-  if (!alike(left, right) || (!beyond_left && !beyond_right)) return false;
-  return (!beyond_left || alike(left, bend(nodes_[j - 2], nodes_[j - 1], nodes_[j]))) &&
-         (!beyond_right || alike(right, bend(nodes_[j + 1], nodes_[j + 2], nodes_[j + 3])));
+  return j > 1 && exact(j - 2) && exact(j + 3) && alike(left, right) &&
+         alike(left, bend(nodes_[j - 2], nodes_[j - 1], nodes_[j])) &&
+         alike(right, bend(nodes_[j + 1], nodes_[j + 2], nodes_[j + 3]));
 }
 
 double Envelope::between(std::size_t j, double& beta) const {
