@@ -12,6 +12,10 @@ using kinematics::FeedWay;
 // A tolerance or clearance below this is not asked for in steps as small: below what machines resolve, mm.
 constexpr double kLeastStep_mm = 1e-3;
 
+// From one place that is asked to the next no point of the cutter goes farther than this share of the
+// tolerance: what lies between is within half of it of one that is free.
+constexpr double kStepShare = 0.5;
+
 /// Smaller by `by`: what comes nearer to the result comes nearer than `by` to the outside of the piece.
 std::vector<BodyPiece> shrunk(const std::vector<BodyPiece>& body, double by) {
   std::vector<BodyPiece> result;
@@ -20,7 +24,9 @@ std::vector<BodyPiece> shrunk(const std::vector<BodyPiece>& body, double by) {
     piece.grow -= off_grow;
     piece.radius -= rest;
     piece.from += rest;
-    if (piece.radius > 0 && piece.from < piece.to) result.push_back(piece);
+    // The bottom of a bull nose is a disc without height, grown.
+    const bool solid = piece.from < piece.to || (piece.from == piece.to && piece.grow > 0);
+    if (piece.radius > 0 && solid) result.push_back(piece);
   }
   return result;
 }
@@ -68,9 +74,8 @@ MotionCheck::Steps MotionCheck::steps(const FeedWay& way) const {
   const double cutter = way.length() + cutter_lever_ * way.turn();
   const double all = way.length() + lever_ * way.turn();
   Steps steps;
-  // From either side of what lies between two steps.
-  if (cutter > 0) steps.fine = 2 * cutter_mm_ / cutter;
-  if (has_holder_ && all > 0) steps.fine = std::min(steps.fine, 2 * holder_mm_ / all);
+  if (cutter > 0) steps.fine = kStepShare * cutter_mm_ / cutter;
+  if (has_holder_ && all > 0) steps.fine = std::min(steps.fine, kStepShare * holder_mm_ / all);
   if (all > 0) steps.coarse = air_mm_ / all;
   return steps;
 }

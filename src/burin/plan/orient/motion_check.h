@@ -26,8 +26,9 @@ class MotionCheck {
   /// there); 0: no expectation. Keeps scene and limits.
   MotionCheck(const Scene& scene, const MachineLimits& limits, double air_mm);
 
-  /// Cutting: free at every step but for the slack; between steps no point of the cutter moves by more than
-  /// the tolerance from one of them, none of the holder by more than half the clearance.
+  /// Cutting: free at every step but for the slack; between steps no point of the cutter is farther than a
+  /// quarter of the tolerance from where it is at one of them, none of the holder than an eighth of the
+  /// clearance.
   bool cut(const cl::Pose& from, const cl::Pose& to, Memory& memory) const;
   /// Through the air: the end too.
   bool air(const cl::Pose& from, const cl::Pose& to, Memory& memory) const;

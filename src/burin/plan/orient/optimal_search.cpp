@@ -18,6 +18,11 @@ constexpr int kMostAsked = 400;
 constexpr double kMargin = 0.04;
 // Share of a foretold tilt at which what blocks below it is looked for.
 constexpr double kShort = 0.03;
+// Narrow allowed sets are looked for at steps of yaw of this (rad) where they would be better by this share,
+// and followed until steps are smaller than kNarrowest.
+constexpr double kBetween = 1 * geom::kPi / 180;
+constexpr double kWorth = 0.01;
+constexpr double kNarrowest = 1e-4;
 // What the next contact point gets.
 constexpr std::size_t kKeptWitnesses = 40;
 
@@ -39,10 +44,49 @@ class OptimalSearch {
         break;
       }
     }
+    look_between(best);
     if (!best.found && best.cause == Cause::none) best.cause = most();
   }
 
  private:
+  /// Allowed sets narrower than the envelope's steps: yaws between those, as far as the witnesses do not rule
+  /// out that they are better by more than what is found nearby anyway.
+  void look_between(Optimum& best) {
+    const AngleRange& range = setting_.range;
+    const double width = range.beta_hi - range.beta_lo;
+    const int steps = static_cast<int>(std::ceil(width / kBetween));
+    const double before = best.found ? best.value : Envelope::kNever;
+    for (int k = 1; k < steps; ++k) try_yaw(range.beta_lo + k * width / steps, kWorth, best);
+    if (!(best.found && best.value > before)) return;
+    for (double step = kBetween / 2; step > kNarrowest; step /= 2)
+      while (try_yaw(best.angles.beta - step, 0, best) || try_yaw(best.angles.beta + step, 0, best)) continue;
+  }
+  /// Whether the yaw gives a value better by more than the share `worth`, which is then taken.
+  bool try_yaw(double beta, double worth, Optimum& best) {
+    const AngleRange& range = setting_.range;
+    if (beta < range.beta_lo || beta > range.beta_hi) return false;
+    const double least = best.found ? (1 + worth) * best.value : Envelope::kNever;
+    const Relaxation::Reach reach = known_.blocked_from(beta, range.alpha_lo, range.alpha_hi);
+    if (reach.covered || !(goal_.value(at_, {reach.alpha, beta}) > least)) return false;
+    Setting near = setting_;
+    if (best.found)
+      near.range.alpha_hi =
+          std::max(reach.alpha, goal_.tilt_of(at_, least, beta, range.alpha_lo, range.alpha_hi));
+    const Scene::FirstFree free = first_allowed(near, at_, beta, reach.alpha, memory_);
+    if (free.witness) known_.add(*free.witness);
+    if (!free.found) {
+      count(free.cause);
+      return false;
+    }
+    const double value = goal_.value(at_, {free.alpha, beta});
+    if (!(value > least)) return false;
+    best.found = true;
+    best.angles = {free.alpha, beta};
+    best.value = value;
+    best.cause = free.cause;
+    return true;
+  }
+
   static double gate(const Optimum& best) {
     return best.found ? (1 - kMargin) * best.value : Envelope::kNever;
   }

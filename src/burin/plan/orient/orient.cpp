@@ -192,9 +192,14 @@ Result<void> plan_strips(const PathFamily& family, int face, const PathTask& tas
                          ProgressSink* progress, OrientPlan& plan) {
   const StripGoal whole(task.mill(), task.options->scallop_mm, StripCount::whole);
   const RadiusGoal radius(task.mill());
-  std::vector<PathTask> ways{task, task};
+  // Smoothing is for the way that is kept: it costs more than the angles themselves.
+  OrientOptions plain_options = *task.options;
+  plain_options.smooth = false;
+  PathTask plain = task;
+  plain.options = &plain_options;
+  std::vector<PathTask> ways{plain, plain};
   ways[1].goal = &radius;
-  PathTask to_left = task, to_right = task;
+  PathTask to_left = plain, to_right = plain;
   to_left.goal = to_right.goal = &whole;
   to_left.setting.range.beta_lo = std::max(0.0, task.setting.range.beta_lo);
   to_right.setting.range.beta_hi = std::min(0.0, task.setting.range.beta_hi);
@@ -202,15 +207,22 @@ Result<void> plan_strips(const PathFamily& family, int face, const PathTask& tas
     if (way.setting.range.beta_lo <= way.setting.range.beta_hi) ways.push_back(way);
   std::optional<Error> error;
   std::optional<OrientPlan> best;
-  for (const PathTask& way : ways) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < ways.size(); ++i) {
     OrientPlan tried;
-    if (auto ok = plan_family(family, face, way, workers, progress, tried); !ok) {
+    if (auto ok = plan_family(family, face, ways[i], workers, progress, tried); !ok) {
       error = ok.error();
     } else if (!best || worth(tried.paths) < worth(best->paths)) {
       best = std::move(tried);
+      kept = i;
     }
   }
   if (!best) return *error;
+  if (task.options->smooth) {
+    ways[kept].options = task.options;
+    best.emplace();
+    if (auto ok = plan_family(family, face, ways[kept], workers, progress, *best); !ok) return ok;
+  }
   for (OrientedPath& path : best->paths) {
     path.number = static_cast<int>(plan.paths.size());
     plan.paths.push_back(std::move(path));
