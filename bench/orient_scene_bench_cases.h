@@ -71,7 +71,9 @@ inline Case make_case(int triangles) {
   const Scene scene(out.mesh, mill, body());
   Scene::Memory memory;
   std::mt19937 random(1);
-  const auto between = [&](double lo, double hi) { return lo + (hi - lo) * (static_cast<double>(random()) / 4294967296.0); };
+  const auto between = [&](double lo, double hi) {
+    return lo + (hi - lo) * (static_cast<double>(random()) / 4294967296.0);
+  };
   bool free = false;
   while (out.poses.size() < 4000) {
     const double x = between(-180, 180), y = between(-180, 180), h = 1e-4;
