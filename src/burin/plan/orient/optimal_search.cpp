@@ -21,7 +21,9 @@ constexpr double kShort = 0.03;
 // Narrow allowed sets are looked for at steps of yaw of this (rad) where they would be better by this share,
 // and followed until steps are smaller than kNarrowest.
 constexpr double kBetween = 1 * geom::kPi / 180;
-constexpr double kWorth = 0.01;
+constexpr double kWorth = 0.003;
+// A quarter of kBetween beside a smooth optimum the goal is lower by less than this share.
+constexpr double kSmoothFall = 1e-3;
 constexpr double kNarrowest = 1e-4;
 // What the next contact point gets.
 constexpr std::size_t kKeptWitnesses = 40;
@@ -55,11 +57,30 @@ class OptimalSearch {
     const AngleRange& range = setting_.range;
     const double width = range.beta_hi - range.beta_lo;
     const int steps = static_cast<int>(std::ceil(width / kBetween));
-    const double before = best.found ? best.value : Envelope::kNever;
     for (int k = 1; k < steps; ++k) try_yaw(range.beta_lo + k * width / steps, kWorth, best);
-    if (!(best.found && best.value > before)) return;
-    for (double step = kBetween / 2; step > kNarrowest; step /= 2)
-      while (try_yaw(best.angles.beta - step, 0, best) || try_yaw(best.angles.beta + step, 0, best)) continue;
+    // Where the goal falls away on a side, a wall is near: to where it ends the better side.
+    if (!best.found || (is_near_best(best.angles.beta - kBetween / 4, best) &&
+                        is_near_best(best.angles.beta + kBetween / 4, best)))
+      return;
+    for (double step = kBetween / 2; best.found && step > kNarrowest; step /= 2) {
+      const double worth = kOptimumShare / 2;
+      while (try_yaw(best.angles.beta - step, worth, best) || try_yaw(best.angles.beta + step, worth, best))
+        continue;
+    }
+  }
+  /// Whether a yaw beside the best is nearly as good, as everywhere where the goal is smooth.
+  bool is_near_best(double beta, const Optimum& best) {
+    const AngleRange& range = setting_.range;
+    if (beta < range.beta_lo || beta > range.beta_hi) return true;
+    const double least = (1 - kSmoothFall) * best.value;
+    const double to = goal_.tilt_of(at_, least, beta, range.alpha_lo, range.alpha_hi);
+    const Relaxation::Reach reach = known_.blocked_from(beta, range.alpha_lo, to);
+    if (reach.covered || !(goal_.value(at_, {reach.alpha, beta}) > least)) return false;
+    Setting near = setting_;
+    near.range.alpha_hi = std::max(reach.alpha, to);
+    const Scene::FirstFree free = first_allowed(near, at_, beta, reach.alpha, memory_);
+    if (free.witness) known_.add(*free.witness);
+    return free.found;
   }
   /// Whether the yaw gives a value better by more than the share `worth`, which is then taken.
   bool try_yaw(double beta, double worth, Optimum& best) {
