@@ -43,9 +43,8 @@ struct OrientRun {
 constexpr double kJointShare = 0.1;
 
 /// Share of the tolerance that the motion between two poses may gouge more than they do
-/// (plan/orient/motion_check: a quarter, and what a step of its check may miss); beyond it is worth a
-/// warning.
-constexpr double kMotionShare = 0.5;
+/// (plan/orient/motion_check: 0.3, and kJointShare); beyond it is worth a warning.
+constexpr double kMotionShare = 0.4;
 
 // --- points.csv
 
