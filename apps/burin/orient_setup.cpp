@@ -32,6 +32,19 @@ Result<std::optional<kinematics::Kinematics>> machine_of(const std::string& name
 
 }  // namespace
 
+orient::MachineLimits OrientSetup::limits() const {
+  if (!machine) return {};
+  constexpr double kInside_deg = 0.01;
+  model::Machine inside = machine->machine();
+  for (model::Axis& axis : inside.axes) {
+    if (axis.kind != model::AxisKind::rotary || axis.max - axis.min <= 4 * kInside_deg) continue;
+    axis.min += kInside_deg;
+    axis.max -= kInside_deg;
+  }
+  const auto kinematics = kinematics::Kinematics::make(inside);
+  return orient::MachineLimits(kinematics ? *kinematics : *machine);
+}
+
 orient::Scene OrientSetup::scene() const {
   const orient::OrientOptions& o = file.options;
   return {part.mesh, file.mill, orient::tool_body(file.mill, o.tolerance_mm, o.clearance_mm)};

@@ -19,9 +19,8 @@ struct OrientSetup {
   std::optional<kinematics::Kinematics> machine;  ///< nothing: "none"
 
   const kinematics::Kinematics* machine_or_null() const { return machine ? &*machine : nullptr; }
-  orient::MachineLimits limits() const {
-    return machine ? orient::MachineLimits(*machine) : orient::MachineLimits();
-  }
+  /// A hundredth of a degree inside the machine's: between poses that stand at a limit the way bulges.
+  orient::MachineLimits limits() const;
   orient::Scene scene() const;
 };
 

@@ -104,7 +104,9 @@ void judge(World& world, std::mt19937& random, Figures& figures) {
   Scene::Memory other;
   const Optimum initial = find_initial(setting, goal, at, other);
   EXPECT_EQ(initial.found, best.initial_found);
-  EXPECT_EQ(initial.angles, best.initial);
+  // The walks that find them begin at different tilts: the last bits may differ.
+  EXPECT_NEAR(initial.angles.alpha, best.initial.alpha, 1e-12);
+  EXPECT_NEAR(initial.angles.beta, best.initial.beta, 1e-12);
   // Allowed sets narrower than the steps of the enumeration may be missed by the paper's way.
   figures.no_initial += !initial.found;
   if (!initial.found) return;
