@@ -104,9 +104,9 @@ void judge(World& world, std::mt19937& random, Figures& figures) {
   Scene::Memory other;
   const Optimum initial = find_initial(setting, goal, at, other);
   EXPECT_EQ(initial.found, best.initial_found);
-  // The walks that find them begin at different tilts: the last bits may differ.
-  EXPECT_NEAR(initial.angles.alpha, best.initial.alpha, 1e-12);
-  EXPECT_NEAR(initial.angles.beta, best.initial.beta, 1e-12);
+  // The walks that find them begin at different tilts, each right within 1e-9 (Scene::first_free).
+  EXPECT_NEAR(initial.angles.alpha, best.initial.alpha, 2e-9);
+  EXPECT_NEAR(initial.angles.beta, best.initial.beta, 2e-9);
   // Allowed sets narrower than the steps of the enumeration may be missed by the paper's way.
   figures.no_initial += !initial.found;
   if (!initial.found) return;
