@@ -9,40 +9,25 @@ namespace {
 
 using namespace burin::orient;
 
-void rate(benchmark::State& state, double count) {
-  state.counters["million_per_s"] =
-      benchmark::Counter(count * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+/// Asks the scene with a memory that begins empty.
+auto fresh(const Scene& scene) {
+  return [&scene, memory = Scene::Memory{}](const burin::cl::Pose& pose) mutable {
+    return scene.blocker(pose, memory).has_value();
+  };
 }
 
 /// One pose a contact point: nothing that one pose learns helps the next.
 void burin_poses(benchmark::State& state) {
   const auto& c = bench::the_case(static_cast<int>(state.range(0)));
   const Scene scene(c.mesh, bench::tool(), bench::body());
-  std::size_t met = 0;
-  for (auto _ : state) {
-    Scene::Memory memory;
-    met = 0;
-    for (const auto& pose : c.poses) met += scene.blocker(pose, memory).has_value();
-    benchmark::DoNotOptimize(met);
-  }
-  state.counters["met"] = static_cast<double>(met) / static_cast<double>(c.poses.size());
-  rate(state, static_cast<double>(c.poses.size()));
+  bench::measure_poses(state, c, [&] { return fresh(scene); });
 }
 BENCHMARK(burin_poses)->Arg(10'000)->Arg(100'352)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
-/// A map of 90 tilts by 45 yaws, cell by cell.
 void burin_map(benchmark::State& state) {
   const auto& c = bench::the_case(static_cast<int>(state.range(0)));
   const Scene scene(c.mesh, bench::tool(), bench::body());
-  std::size_t met = 0, next = 0;
-  for (auto _ : state) {
-    Scene::Memory memory;
-    for (const auto& pose : bench::map_poses(c.contacts[next]))
-      met += scene.blocker(pose, memory).has_value();
-    benchmark::DoNotOptimize(met);
-    next = (next + 97) % c.contacts.size();
-  }
-  rate(state, 90 * 45);
+  bench::measure_maps(state, c, [&] { return fresh(scene); });
 }
 BENCHMARK(burin_map)->Arg(100'352)->Unit(benchmark::kMillisecond);
 
@@ -64,7 +49,7 @@ void burin_firstfree(benchmark::State& state) {
     benchmark::DoNotOptimize(found);
   }
   state.counters["found"] = static_cast<double>(found) / static_cast<double>(c.contacts.size());
-  rate(state, static_cast<double>(c.contacts.size()));
+  bench::rate(state, static_cast<double>(c.contacts.size()));
 }
 BENCHMARK(burin_firstfree)->Arg(10'000)->Arg(100'352)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 

@@ -4,6 +4,8 @@
 // points all over the blade; poses there, every second one free. Cutter, shank and holder as three cylinders.
 #pragma once
 
+#include <benchmark/benchmark.h>
+
 #include <map>
 #include <random>
 
@@ -113,6 +115,38 @@ inline const Case& the_case(int triangles) {
   auto it = cases.find(triangles);
   if (it == cases.end()) it = cases.emplace(triangles, make_case(triangles)).first;
   return it->second;
+}
+
+inline void rate(benchmark::State& state, double count) {
+  state.counters["million_per_s"] =
+      benchmark::Counter(count * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+/// The poses of the case; `begin()` gives what is asked of each in one round: meets(pose).
+template <class Begin>
+void measure_poses(benchmark::State& state, const Case& c, const Begin& begin) {
+  std::size_t met = 0;
+  for (auto _ : state) {
+    auto meets = begin();
+    met = 0;
+    for (const auto& pose : c.poses) met += meets(pose);
+    benchmark::DoNotOptimize(met);
+  }
+  state.counters["met"] = static_cast<double>(met) / static_cast<double>(c.poses.size());
+  rate(state, static_cast<double>(c.poses.size()));
+}
+
+/// Maps of 90 tilts by 45 yaws, cell by cell, of one contact point after the other.
+template <class Begin>
+void measure_maps(benchmark::State& state, const Case& c, const Begin& begin) {
+  std::size_t met = 0, next = 0;
+  for (auto _ : state) {
+    auto meets = begin();
+    for (const auto& pose : map_poses(c.contacts[next])) met += meets(pose);
+    benchmark::DoNotOptimize(met);
+    next = (next + 97) % c.contacts.size();
+  }
+  rate(state, 90 * 45);
 }
 
 }  // namespace burin::orient::bench

@@ -54,29 +54,14 @@ class Peer {
 void fcl_poses(benchmark::State& state) {
   const auto& c = bench::the_case(static_cast<int>(state.range(0)));
   const Peer peer(c);
-  std::size_t met = 0;
-  for (auto _ : state) {
-    met = 0;
-    for (const auto& pose : c.poses) met += peer.meets(pose);
-    benchmark::DoNotOptimize(met);
-  }
-  state.counters["met"] = static_cast<double>(met) / static_cast<double>(c.poses.size());
-  state.counters["million_per_s"] = benchmark::Counter(static_cast<double>(c.poses.size()) * 1e-6,
-                                                       benchmark::Counter::kIsIterationInvariantRate);
+  bench::measure_poses(state, c, [&] { return [&](const auto& pose) { return peer.meets(pose); }; });
 }
 BENCHMARK(fcl_poses)->Arg(10'000)->Arg(100'352)->Arg(1'000'000)->Unit(benchmark::kMillisecond);
 
 void fcl_map(benchmark::State& state) {
   const auto& c = bench::the_case(static_cast<int>(state.range(0)));
   const Peer peer(c);
-  std::size_t met = 0, next = 0;
-  for (auto _ : state) {
-    for (const auto& pose : bench::map_poses(c.contacts[next])) met += peer.meets(pose);
-    benchmark::DoNotOptimize(met);
-    next = (next + 97) % c.contacts.size();
-  }
-  state.counters["million_per_s"] =
-      benchmark::Counter(90 * 45 * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
+  bench::measure_maps(state, c, [&] { return [&](const auto& pose) { return peer.meets(pose); }; });
 }
 BENCHMARK(fcl_map)->Arg(100'352)->Unit(benchmark::kMillisecond);
 

@@ -149,16 +149,12 @@ Result<void> run_cspace(const CSpaceArgs& args, Session& session) {
   }
   auto setup = load_orient(args.job, args.tolerance, session);
   if (!setup) return setup.error();
-  const auto in_file = [&](Error error) {
-    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.job;
-    return error;
-  };
   const orient::Scene scene = setup->scene();
   const orient::MachineLimits limits = setup->limits();
   auto point = find_point(args, *setup, scene, limits, session);
   session.end_progress();
   session.diagnostics.locate(args.job);
-  if (!point) return in_file(point.error());
+  if (!point) return in_file(point.error(), args.job);
   const model::Mill& mill = setup->file.mill;
   orient::Scene::Memory memory;
   const orient::CSpaceMap map = orient::make_map(orient::setting_of(scene, limits, setup->file.options),
@@ -171,13 +167,9 @@ Result<void> run_cspace(const CSpaceArgs& args, Session& session) {
   picture.mill = &mill;
   if (point->initial_found) picture.marks.push_back({"initial", point->initial});
   if (point->reachable) picture.marks.push_back({"optimum", point->angles});
-  const auto put = [&](const std::string& path, auto&& make) -> Result<void> {
-    if (path.empty()) return {};
-    return session.put(path, make());
-  };
-  if (auto ok = put(csv, [&] { return map_csv(map, mill); }); !ok) return ok;
-  if (auto ok = put(args.png, [&] { return view::cspace_png(picture); }); !ok) return ok;
-  return put(common.svg, [&] { return view::cspace_svg(picture); });
+  if (auto ok = session.put_made(csv, [&] { return map_csv(map, mill); }); !ok) return ok;
+  if (auto ok = session.put_made(args.png, [&] { return view::cspace_png(picture); }); !ok) return ok;
+  return session.put_made(common.svg, [&] { return view::cspace_svg(picture); });
 }
 
 }  // namespace

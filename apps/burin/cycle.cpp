@@ -342,19 +342,16 @@ std::string html(const CycleArgs& args, const job::CycleJob& job, const Servo& s
 Result<void> put_outputs(const CycleArgs& args, const job::CycleJob& job, const Servo& servo,
                          const post::NcText& nc, const std::string& nc_path, const std::string& text,
                          Session& session) {
-  const auto put = [&](const std::string& path, auto&& make) -> Result<void> {
-    if (path.empty()) return {};
-    return session.put(path, make());
-  };
-  if (auto ok = put(nc_path, [&] { return nc.text; }); !ok) return ok;
-  if (auto ok = put(session.common.cl, [&] { return cl::write_apt(job.cl); }); !ok) return ok;
-  if (auto ok = put(args.surfaces, [&] { return surfaces_text(job); }); !ok) return ok;
+  if (auto ok = session.put_made(nc_path, [&] { return nc.text; }); !ok) return ok;
+  if (auto ok = session.put_made(session.common.cl, [&] { return cl::write_apt(job.cl); }); !ok) return ok;
+  if (auto ok = session.put_made(args.surfaces, [&] { return surfaces_text(job); }); !ok) return ok;
   const bool npy = to_lower(fs::path(args.setpoints).extension().string()) == ".npy";
-  if (auto ok = put(args.setpoints,
-                    [&] { return npy ? servo::to_npy(servo.setpoints) : servo::to_csv(servo.setpoints); });
+  if (auto ok = session.put_made(
+          args.setpoints,
+          [&] { return npy ? servo::to_npy(servo.setpoints) : servo::to_csv(servo.setpoints); });
       !ok)
     return ok;
-  return put(session.common.html, [&] { return html(args, job, servo, text, session); });
+  return session.put_made(session.common.html, [&] { return html(args, job, servo, text, session); });
 }
 
 /// -o, or the program's name with .ngc when nothing else is asked for.
@@ -392,11 +389,7 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   auto job = job::make_cycle_job(*text, options, session.diagnostics, session.progress());
   session.end_progress();
   session.diagnostics.locate(args.program);
-  const auto in_file = [&](Error error) {
-    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.program;
-    return error;
-  };
-  if (!job) return in_file(job.error());
+  if (!job) return in_file(job.error(), args.program);
   if (job->stretches.empty())
     session.diagnostics.left_out("no_motion", "the program moves nothing", {.file = args.program});
   if (job->cl.name.empty()) job->cl.name = fs::path(args.program).stem().string();
@@ -405,19 +398,20 @@ Result<void> run_cycle(const CycleArgs& args, Session& session) {
   auto servo = interpolate(*job, args.limits, reported, session);
   if (!servo) {
     // Without setpoints asked for, NC and surfaces are worth having all the same.
-    if (!args.setpoints.empty() || servo.error().code == ErrorCode::usage) return in_file(servo.error());
+    if (!args.setpoints.empty() || servo.error().code == ErrorCode::usage)
+      return in_file(servo.error(), args.program);
     session.diagnostics.left_out("no_setpoints", "no setpoints were made: " + servo.error().message,
                                  {.file = args.program});
     servo = Servo{};
   }
   auto nc = post::emit(job->cl, *dialect, {.write_z = true}, session.diagnostics);
-  if (!nc) return in_file(nc.error());
+  if (!nc) return in_file(nc.error(), args.program);
   if (reported) {
     auto size = program_size(*job, text->size(), *dialect, options.tolerance_mm);
-    if (!size) return in_file(size.error());
+    if (!size) return in_file(size.error(), args.program);
     session.report.extra["program_size"] = *size;
   }
-  if (auto ok = compare(*job, options, session); !ok) return in_file(ok.error());
+  if (auto ok = compare(*job, options, session); !ok) return in_file(ok.error(), args.program);
   fill_report(options, args.limits, *job, *servo, *nc, session);
   return put_outputs(args, *job, *servo, *nc, nc_path, *text, session);
 }

@@ -28,4 +28,11 @@ void report_joints(const kinematics::JointPath& path, Session& session) {
                                                          "a rotary axis is at its acceleration");
 }
 
+Json pieces_json(const std::vector<model::HolderPiece>& pieces) {
+  Json out = Json::array();
+  for (const model::HolderPiece& piece : pieces)
+    out.push_back({{"radius_mm", piece.radius}, {"height_mm", piece.height}});
+  return out;
+}
+
 }  // namespace burin::cli

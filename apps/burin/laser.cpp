@@ -328,17 +328,13 @@ Result<void> run_laser(const LaserArgs& args, Session& session) {
     if (auto ok = session.reserve_output(nc_path); !ok) return ok;
   }
 
-  const auto in_file = [&](Error error) {
-    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.drawing;
-    return error;
-  };
   auto job = laser::plan_laser(*drawing, *plan, session.diagnostics, session.progress());
   session.end_progress();
   session.diagnostics.locate(args.drawing);
-  if (!job) return in_file(job.error());
+  if (!job) return in_file(job.error(), args.drawing);
   job->toolpath.program.name = fs::path(args.drawing).stem().string();
   auto nc = post::emit(job->toolpath.program, *dialect, {}, session.diagnostics);
-  if (!nc) return in_file(nc.error());
+  if (!nc) return in_file(nc.error(), args.drawing);
   fill_report(*kerf, *drawing, *plan, *job, session);
   return put_outputs(*drawing, *kerf, *job, *nc, nc_path, session);
 }

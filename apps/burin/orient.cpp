@@ -199,13 +199,6 @@ Result<void> judge(const OrientArgs& args, const OrientSetup& setup, const orien
 
 // --- report
 
-Json pieces_json(const model::Mill& mill) {
-  Json pieces = Json::array();
-  for (const model::HolderPiece& piece : mill.holder)
-    pieces.push_back({{"radius_mm", piece.radius}, {"height_mm", piece.height}});
-  return pieces;
-}
-
 const char* word(orient::Pattern pattern) {
   return pattern == orient::Pattern::iso_u ? "iso-u" : pattern == orient::Pattern::iso_v ? "iso-v" : "plane";
 }
@@ -235,7 +228,7 @@ Json parameters(const OrientSetup& setup, const std::string& dialect) {
           {"radius_mm", mill.radius},
           {"corner_radius_mm", mill.corner_radius},
           {"length_mm", mill.length},
-          {"holder", pieces_json(mill)},
+          {"holder", pieces_json(mill.holder)},
           {"machine", setup.file.machine},
           {"dialect", dialect}};
 }
@@ -243,14 +236,7 @@ Json parameters(const OrientSetup& setup, const std::string& dialect) {
 /// Feed moves as the joints make them, rapids at the axes' speeds; at the feed alone without a machine.
 double machining_s(const OrientSetup& setup, const OrientRun& run) {
   if (!run.joints) return 60 * cl::totals(run.path.program).feed_mm / setup.file.options.feed_mm_min;
-  double minutes = 0;
-  const kinematics::Joints* at = nullptr;
-  for (const kinematics::JointMove& move : run.joints->moves) {
-    minutes += move.minutes;
-    if (move.rapid && at != nullptr) minutes += kinematics::least_minutes(*setup.machine, *at, move.to);
-    at = &move.to;
-  }
-  return 60 * minutes;
+  return 60 * kinematics::total_minutes(*setup.machine, run.joints->moves);
 }
 
 Json comparison_json(const orient::Comparison& c) {
@@ -410,14 +396,11 @@ std::string html(const OrientArgs& args, const OrientSetup& setup, const OrientR
 Result<void> put_outputs(const OrientArgs& args, const OrientSetup& setup, const OrientRun& run,
                          const orient::Scene& scene, const orient::MachineLimits& limits,
                          const std::string& nc_path, const std::string& cl_path, Session& session) {
-  const auto put = [&](const std::string& path, auto&& make) -> Result<void> {
-    if (path.empty()) return {};
-    return session.put(path, make());
-  };
-  if (auto ok = put(nc_path, [&] { return run.nc->text; }); !ok) return ok;
-  if (auto ok = put(args.points, [&] { return points_csv(run.plan); }); !ok) return ok;
-  if (auto ok = put(cl_path, [&] { return cl::write_apt(run.path.program); }); !ok) return ok;
-  return put(session.common.html, [&] { return html(args, setup, run, scene, limits, session); });
+  if (auto ok = session.put_made(nc_path, [&] { return run.nc->text; }); !ok) return ok;
+  if (auto ok = session.put_made(args.points, [&] { return points_csv(run.plan); }); !ok) return ok;
+  if (auto ok = session.put_made(cl_path, [&] { return cl::write_apt(run.path.program); }); !ok) return ok;
+  return session.put_made(session.common.html,
+                          [&] { return html(args, setup, run, scene, limits, session); });
 }
 
 /// Tool path, and what the machine makes of it.
@@ -493,26 +476,22 @@ Result<void> run_orient(const OrientArgs& args, Session& session) {
   if (!setup) return setup.error();
   auto names = output_names(args, *setup, session);
   if (!names) return names.error();
-  const auto in_file = [&](Error error) {
-    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.job;
-    return error;
-  };
   const auto workers = session.workers();
   const orient::Scene scene = setup->scene();
   const orient::MachineLimits limits = setup->limits();
   auto plan = orient::plan(setup->part, scene, limits, setup->contacts, setup->machine_or_null(),
                            setup->file.options, *workers, session.diagnostics, session.progress());
-  if (!plan) return in_file(plan.error());
+  if (!plan) return in_file(plan.error(), args.job);
   if (!session.first()) return {};
   OrientRun run;
   run.plan = std::move(*plan);
-  if (auto ok = judge(args, *setup, run.plan, session); !ok) return in_file(ok.error());
+  if (auto ok = judge(args, *setup, run.plan, session); !ok) return in_file(ok.error(), args.job);
   if (auto ok = make_motion(args, *setup, scene, limits, *dialect, !names->nc.empty(), run, session); !ok)
-    return in_file(ok.error());
+    return in_file(ok.error(), args.job);
   std::optional<job::OrientCheck> check;
   if (!session.common.json.empty() || !session.common.html.empty()) {
     auto checked = check_motion(args, *setup, run, session);
-    if (!checked) return in_file(checked.error());
+    if (!checked) return in_file(checked.error(), args.job);
     check = std::move(*checked);
     warn_of_gouge(*setup, *check, session);
   }

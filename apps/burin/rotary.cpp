@@ -69,26 +69,6 @@ std::string points_csv(const rotary::RotaryPlan& plan) {
 
 // --- report
 
-Json holder_json(const model::BallTool& tool) {
-  Json pieces = Json::array();
-  for (const model::HolderPiece& piece : tool.holder)
-    pieces.push_back({{"radius_mm", piece.radius}, {"height_mm", piece.height}});
-  return pieces;
-}
-
-double machining_s(const job::RotaryJob& job, const kinematics::Kinematics& machine) {
-  double minutes = 0;
-  kinematics::Joints at;
-  bool known = false;
-  for (const kinematics::JointMove& move : job.joints.moves) {
-    minutes += move.minutes;
-    if (move.rapid && known) minutes += kinematics::least_minutes(machine, at, move.to);
-    at = move.to;
-    known = true;
-  }
-  return 60 * minutes;
-}
-
 void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, const post::NcText& nc,
                  const kinematics::Kinematics& machine, const std::optional<job::RotaryCheck>& check,
                  Session& session) {
@@ -109,7 +89,7 @@ void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, cons
                   {"ball_radius_mm", file.tool.radius},
                   {"shank_radius_mm", file.tool.shank_radius},
                   {"shank_length_mm", file.tool.shank_length},
-                  {"holder", holder_json(file.tool)},
+                  {"holder", pieces_json(file.tool.holder)},
                   {"machine", machine.machine().name},
                   {"dialect", session.common.dialect}};
   r.counts = {{"contact_points", c.contact_points},
@@ -146,7 +126,7 @@ void fill_report(const job::RotaryJobFile& file, const job::RotaryJob& job, cons
   r.lengths_mm = {{"cut", job.plan.lengths_mm.cut},
                   {"link", job.plan.lengths_mm.link},
                   {"rapid", job.plan.lengths_mm.rapid}};
-  r.time_s["machining"] = machining_s(job, machine);
+  r.time_s["machining"] = 60 * kinematics::total_minutes(machine, job.joints.moves);
 }
 
 /// What the independent check found beyond the tolerance.
@@ -193,16 +173,14 @@ std::string html(const RotaryArgs& args, const job::RotaryJobFile& file, const j
 
 Result<void> put_outputs(const RotaryArgs& args, const job::RotaryJobFile& file, const job::RotaryJob& job,
                          const post::NcText& nc, const std::string& nc_path, Session& session) {
-  const auto put = [&](const std::string& path, auto&& make) -> Result<void> {
-    if (path.empty()) return {};
-    return session.put(path, make());
-  };
-  if (auto ok = put(nc_path, [&] { return nc.text; }); !ok) return ok;
-  if (auto ok = put(args.points, [&] { return points_csv(job.plan); }); !ok) return ok;
-  if (auto ok = put(session.common.cl, [&] { return cl::write_apt(job.cl); }); !ok) return ok;
-  if (auto ok = put(session.common.svg, [&] { return view::rotary_svg(job.part, job.plan, file.tool); }); !ok)
+  if (auto ok = session.put_made(nc_path, [&] { return nc.text; }); !ok) return ok;
+  if (auto ok = session.put_made(args.points, [&] { return points_csv(job.plan); }); !ok) return ok;
+  if (auto ok = session.put_made(session.common.cl, [&] { return cl::write_apt(job.cl); }); !ok) return ok;
+  if (auto ok = session.put_made(session.common.svg,
+                                 [&] { return view::rotary_svg(job.part, job.plan, file.tool); });
+      !ok)
     return ok;
-  return put(session.common.html, [&] { return html(args, file, job, nc.text, session); });
+  return session.put_made(session.common.html, [&] { return html(args, file, job, nc.text, session); });
 }
 
 /// -o, or the job's name with .ngc when nothing else is asked for.
@@ -246,17 +224,13 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
                                   session.diagnostics, session.progress());
   session.end_progress();
   session.diagnostics.locate(args.job);
-  const auto in_file = [&](Error error) {
-    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.job;
-    return error;
-  };
-  if (!job) return in_file(job.error());
+  if (!job) return in_file(job.error(), args.job);
   report_joints(job->joints, session);
   post::JointEmitOptions emit;
   emit.write_z = true;
   emit.feed = args.joints.feed;
   auto nc = post::emit_joints(job->cl, *machine, job->joints, *dialect, emit, session.diagnostics);
-  if (!nc) return in_file(nc.error());
+  if (!nc) return in_file(nc.error(), args.job);
   std::optional<job::RotaryCheck> check;
   if (!session.common.json.empty() || !session.common.html.empty())
     check = job::check_rotary_job(*file, *job, *machine);

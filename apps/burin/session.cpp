@@ -128,6 +128,11 @@ ProgressSink* Session::progress() {
   return progress_.get();
 }
 
+Error in_file(Error error, const std::string& file) {
+  if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = file;
+  return error;
+}
+
 Json to_json(const Warning& warning) {
   Json json;
   json["severity"] = warning.severity == Severity::left_out ? "left_out" : "info";

@@ -59,6 +59,13 @@ class Session {
   /// An output, "-" is standard output. Reserves it when that has not been done. Kept until everything has
   /// succeeded.
   Result<void> put(const std::string& path, std::string content);
+  /// The same with what make() gives, unless the output is not asked for (an empty path): then nothing is
+  /// made.
+  template <class Make>
+  Result<void> put_made(const std::string& path, const Make& make) {
+    if (path.empty()) return {};
+    return put(path, make());
+  }
   /// To standard output after all files are written: what a command that only answers prints.
   void print(std::string_view text) { answer_ += text; }
 
@@ -99,6 +106,10 @@ class Session {
   std::unique_ptr<ProgressSink> progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// Names the file in an error about content that has none yet; how the program is used is no matter of a
+/// file.
+Error in_file(Error error, const std::string& file);
 
 /// JSON of a warning: {severity, code, entity, position_mm, message} and file, line when known.
 Json to_json(const Warning& warning);

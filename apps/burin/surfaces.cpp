@@ -366,10 +366,6 @@ Result<void> run_surfaces(const SurfacesArgs& args, Session& session) {
   if (writes && session.common.output.empty()) {
     if (auto ok = session.reserve_output(nc_path); !ok) return ok;
   }
-  const auto in_file = [&](Error error) {
-    if (error.where.file.empty() && error.code != ErrorCode::usage) error.where.file = args.part;
-    return error;
-  };
   auto model = io::read_cad(*bytes, read, session.diagnostics);
   if (!model) return model.error();
   auto setup = setup_of(args, *model, write);
@@ -380,7 +376,7 @@ Result<void> run_surfaces(const SurfacesArgs& args, Session& session) {
   if (args.list) session.print(faces_table(chosen, *setup));
   if (!writes) return {};
   auto text = program_text(chosen, args, *setup, write);
-  if (!text) return in_file(text.error());
+  if (!text) return in_file(text.error(), args.part);
   return session.put(nc_path, std::move(*text));
 }
 

@@ -286,6 +286,17 @@ Joints between(const Joints& a, const Joints& b, double t) {
   return j;
 }
 
+double total_minutes(const Kinematics& machine, const std::vector<JointMove>& moves) {
+  double minutes = 0;
+  const Joints* at = nullptr;
+  for (const JointMove& move : moves) {
+    minutes += move.minutes;
+    if (move.rapid && at != nullptr) minutes += least_minutes(machine, *at, move.to);
+    at = &move.to;
+  }
+  return minutes;
+}
+
 TipMotion tip_motion(const Kinematics& machine, const Joints& from, const Joints& to) {
   // The speed is smooth over a move: differences over a thousandth are exact to 1e-6 of it, and five nodes of
   // Simpson's rule (which hold both ends) are as exact for turns below half a radian.

@@ -77,5 +77,7 @@ struct TipMotion {
 /// Time that the slowest axis needs at its highest speed; axes without a speed do not count.
 double least_minutes(const Kinematics& machine, const Joints& from, const Joints& to);
 TipMotion tip_motion(const Kinematics& machine, const Joints& from, const Joints& to);
+/// Time of all moves: rapids as fast as the axes go, but for the first one, which begins anywhere.
+double total_minutes(const Kinematics& machine, const std::vector<JointMove>& moves);
 
 }  // namespace burin::kinematics

@@ -83,15 +83,8 @@ Result<GridLines> grid_lines(const NurbsSurface& surface, const TessellateOption
 }
 
 Result<GridLines> detail::grid_lines(const Spans& spans, const TessellateOptions& options) {
-  if (!(options.deflection_mm > 0) || !(options.max_edge_mm >= 0))
-    return Error{ErrorCode::range, "the deflection or the longest edge of triangles is not positive", {}};
+  if (auto ok = check_budget(spans, options); !ok) return ok.error();
   const auto most = static_cast<double>(options.max_triangles);
-  if (2 * static_cast<double>(spans.bounds.size()) > most)
-    return Error{ErrorCode::range,
-                 "a surface of " + std::to_string(spans.bounds.size()) + " pieces (at most " +
-                     std::to_string(options.max_triangles / 2) + " for " +
-                     std::to_string(options.max_triangles) + " triangles)",
-                 {}};
   double deflection = options.deflection_mm;
   Counts counts = choose(spans, deflection, options.max_edge_mm);
   // Without a bound on the edges the count falls to one cell a piece in the end.

@@ -82,6 +82,18 @@ Result<Spans> spans_of(const NurbsSurface& surface, bool along) {
   return spans;
 }
 
+Result<void> check_budget(const Spans& spans, const TessellateOptions& options) {
+  if (!(options.deflection_mm > 0) || !(options.max_edge_mm >= 0))
+    return Error{ErrorCode::range, "the deflection or the longest edge of triangles is not positive", {}};
+  if (2 * static_cast<double>(spans.bounds.size()) > static_cast<double>(options.max_triangles))
+    return Error{ErrorCode::range,
+                 "a surface of " + std::to_string(spans.bounds.size()) + " pieces (at most " +
+                     std::to_string(options.max_triangles / 2) + " for " +
+                     std::to_string(options.max_triangles) + " triangles)",
+                 {}};
+  return {};
+}
+
 double columns_for(const SecondBounds& m, double length, double share, double deflection, double max_edge,
                    bool square) {
   double n = std::max({1.0, std::ceil(length * std::sqrt(m.uu / (share * 8 * deflection))),

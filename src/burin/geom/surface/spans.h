@@ -7,6 +7,7 @@
 
 #include "burin/base/result.h"
 #include "burin/geom/surface/second_bounds.h"
+#include "burin/geom/surface/tessellate.h"
 
 namespace burin::geom::detail {
 
@@ -18,6 +19,9 @@ struct Spans {
 /// `along`: deviations along the surface count too (faces that are cut along trims). Error (range): more
 /// pieces or more points of all pieces than memory should hold; what validate() says.
 Result<Spans> spans_of(const NurbsSurface& surface, bool along);
+
+/// Error (range): a deflection or longest edge that is not positive, fewer triangles than two a piece.
+Result<void> check_budget(const Spans& spans, const TessellateOptions& options);
 
 /// The share of the deflection that the curvature along u may take: candidates, the cheapest wins.
 inline constexpr double kShares[] = {0.02, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95};

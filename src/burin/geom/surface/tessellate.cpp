@@ -220,17 +220,10 @@ double Tessellator::triangles(double deflection_mm, double max_edge_mm) const {
 }
 
 Result<Tessellation> Tessellator::build(bool reversed, const TessellateOptions& options) const {
-  if (!(options.deflection_mm > 0) || !(options.max_edge_mm >= 0))
-    return Error{ErrorCode::range, "the deflection or the longest edge of triangles is not positive", {}};
   const detail::Spans& spans = state_->spans;
+  if (auto ok = detail::check_budget(spans, options); !ok) return ok.error();
   if (!state_->trims->empty()) return trimmed(*state_->surface, spans, reversed, *state_->trims, options);
   const auto most = static_cast<double>(options.max_triangles);
-  if (2 * static_cast<double>(spans.bounds.size()) > most)
-    return Error{ErrorCode::range,
-                 "a surface of " + std::to_string(spans.bounds.size()) + " pieces (at most " +
-                     std::to_string(options.max_triangles / 2) + " for " +
-                     std::to_string(options.max_triangles) + " triangles)",
-                 {}};
   double deflection = options.deflection_mm;
   State::Choice chosen = state_->cheaper(deflection, options.max_edge_mm);
   // Without a bound on the edges the count falls to one cell a piece in the end.

@@ -6,7 +6,6 @@
 
 #include "burin/kinematics/feed_way.h"
 #include "burin/plan/orient/limits.h"
-#include "burin/plan/orient/part.h"
 #include "burin/plan/orient/scene.h"
 
 namespace burin::orient {

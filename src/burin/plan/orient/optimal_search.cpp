@@ -68,43 +68,44 @@ class OptimalSearch {
         continue;
     }
   }
-  /// Whether a yaw beside the best is nearly as good, as everywhere where the goal is smooth.
-  bool is_near_best(double beta, const Optimum& best) {
+  /// The first allowed tilt of a yaw, as far as it gives a value above `least`; what stands in the way is
+  /// learnt.
+  std::optional<Scene::FirstFree> above(double least, double beta) {
     const AngleRange& range = setting_.range;
-    if (beta < range.beta_lo || beta > range.beta_hi) return true;
-    const double least = (1 - kSmoothFall) * best.value;
-    const double to = goal_.tilt_of(at_, least, beta, range.alpha_lo, range.alpha_hi);
-    const Relaxation::Reach reach = known_.blocked_from(beta, range.alpha_lo, to);
-    if (reach.covered || !(goal_.value(at_, {reach.alpha, beta}) > least)) return false;
-    Setting near = setting_;
-    near.range.alpha_hi = std::max(reach.alpha, to);
-    const Scene::FirstFree free = first_allowed(near, at_, beta, reach.alpha, memory_);
-    if (free.witness) known_.add(*free.witness);
-    return free.found;
-  }
-  /// Whether the yaw gives a value better by more than the share `worth`, which is then taken.
-  bool try_yaw(double beta, double worth, Optimum& best) {
-    const AngleRange& range = setting_.range;
-    if (beta < range.beta_lo || beta > range.beta_hi) return false;
-    const double least = best.found ? (1 + worth) * best.value : Envelope::kNever;
     const Relaxation::Reach reach = known_.blocked_from(beta, range.alpha_lo, range.alpha_hi);
-    if (reach.covered || !(goal_.value(at_, {reach.alpha, beta}) > least)) return false;
+    if (reach.covered || !(goal_.value(at_, {reach.alpha, beta}) > least)) return std::nullopt;
     Setting near = setting_;
-    if (best.found)
+    if (least > Envelope::kNever)
       near.range.alpha_hi =
           std::max(reach.alpha, goal_.tilt_of(at_, least, beta, range.alpha_lo, range.alpha_hi));
     const Scene::FirstFree free = first_allowed(near, at_, beta, reach.alpha, memory_);
     if (free.witness) known_.add(*free.witness);
-    if (!free.found) {
-      count(free.cause);
-      return false;
-    }
-    const double value = goal_.value(at_, {free.alpha, beta});
+    if (free.found) return free;
+    count(free.cause);
+    return std::nullopt;
+  }
+  bool in_range(double beta) const {
+    return setting_.range.beta_lo <= beta && beta <= setting_.range.beta_hi;
+  }
+  /// Whether a yaw beside the best is nearly as good, as everywhere where the goal is smooth.
+  bool is_near_best(double beta, const Optimum& best) {
+    return !in_range(beta) || above((1 - kSmoothFall) * best.value, beta);
+  }
+  /// Whether the yaw gives a value better by more than the share `worth`, which is then taken.
+  bool try_yaw(double beta, double worth, Optimum& best) {
+    if (!in_range(beta)) return false;
+    const double least = best.found ? (1 + worth) * best.value : Envelope::kNever;
+    const auto free = above(least, beta);
+    return free && take({free->alpha, beta}, free->cause, least, best);
+  }
+  /// Whether the value of the angles is above `least`; they are then the best.
+  bool take(const Angles& angles, Cause cause, double least, Optimum& best) const {
+    const double value = goal_.value(at_, angles);
     if (!(value > least)) return false;
     best.found = true;
-    best.angles = {free.alpha, beta};
+    best.angles = angles;
     best.value = value;
-    best.cause = free.cause;
+    best.cause = cause;
     return true;
   }
 
@@ -140,13 +141,7 @@ class OptimalSearch {
     }
     const Scene::FirstFree free = first_allowed(near, at_, beta, from, memory_);
     if (free.found) {
-      const double value = goal_.value(at_, {free.alpha, beta});
-      if (!best.found || value > best.value) {
-        best.found = true;
-        best.angles = {free.alpha, beta};
-        best.value = value;
-        best.cause = free.cause;
-      }
+      take({free.alpha, beta}, free.cause, best.found ? best.value : Envelope::kNever, best);
       envelope.raise(i, free.alpha, true);
     } else {
       count(free.cause);
