@@ -13,6 +13,8 @@ void add_rotary(Cli& cli);
 void add_orient(Cli& cli);
 void add_cspace(Cli& cli);
 void add_post(Cli& cli);
+void add_verify(Cli& cli);
+void add_view(Cli& cli);
 void add_surfaces(Cli& cli);
 
 }  // namespace burin::cli

@@ -37,6 +37,8 @@ int main(int argc, char** argv) {
     burin::cli::add_orient(cli);
     burin::cli::add_cspace(cli);
     burin::cli::add_post(cli);
+    burin::cli::add_verify(cli);
+    burin::cli::add_view(cli);
     return cli.run(argc, argv);
   } catch (const std::bad_alloc&) {
     burin::cli::print_error("burin: out of memory (a smaller input, or more memory)");

@@ -3,7 +3,6 @@
 // written here. mm, degrees in the file, radians in the types.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 
 #include "burin/base/diagnostics.h"
 #include "burin/base/result.h"
+#include "burin/job/file_source.h"
 #include "burin/model/propeller.h"
 #include "burin/model/tool.h"
 #include "burin/plan/orient/orient.h"
@@ -39,9 +39,6 @@ struct OrientJobFile {
 
 /// Every key checked; errors with file, line, column and what would be accepted.
 Result<OrientJobFile> read_orient_job(std::string_view toml, const std::string& file_name);
-
-/// Content of a file; the application's (it keeps count of inputs).
-using FileSource = std::function<Result<std::string>(const std::string& path)>;
 
 /// Paths of the job are relative to `folder`. The design's triangles lie within tolerance / 40 of its faces
 /// (coarser, said as a message, when that takes too many); obstacles within tolerance / 4.

@@ -3,7 +3,6 @@
 // written here. mm, degrees in the file, radians in the types.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +11,7 @@
 
 #include "burin/base/diagnostics.h"
 #include "burin/base/result.h"
+#include "burin/job/file_source.h"
 #include "burin/kinematics/joint_path.h"
 #include "burin/model/tool.h"
 #include "burin/plan/rotary/rotary.h"
@@ -53,9 +53,6 @@ inline constexpr double kMeshShare = 0.2, kFacetShare = 0.1;
 
 /// Every key checked; errors with file, line, column and what would be accepted.
 Result<RotaryJobFile> read_rotary_job(std::string_view toml, const std::string& file_name);
-
-/// Content of a file; the application's (it keeps count of inputs).
-using FileSource = std::function<Result<std::string>(const std::string& path)>;
 
 /// Paths of the job are relative to `folder`.
 Result<rotary::Part> load_rotary_part(const RotaryJobFile& job, const std::string& folder,

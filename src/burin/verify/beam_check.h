@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Laser: the region that the beam sweeps against the outline of the part, both sides. Shares nothing with
+// plan/laser or the offset. mm, part frame, z ignored. docs/verify-beam.md
+//
+// The beam is a disc of diameter `kerf_mm`, swept along the lines and arcs while it is on. Inside of the
+// outline (the part) what it takes is gouge, in mm below the outline's edge. Outside, the material between
+// outline and cut is excess: at each place of the outline the distance outwards to the swept region; nothing
+// within reach is an edge that is not cut.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "burin/base/diagnostics.h"
+#include "burin/base/result.h"
+#include "burin/cl/program.h"
+#include "burin/geom/curve/arc_spline.h"
+
+namespace burin::verify {
+
+/// Closed outlines of lines and arcs, the part on the left of all of them (outer counter-clockwise, holes
+/// clockwise). Open ones may be cut along on either side: they are centre lines.
+struct Outline {
+  std::vector<geom::Segment> segments;
+  bool closed = true;
+};
+
+struct BeamCheckOptions {
+  double kerf_mm = 0;
+  double reach_mm = 5;
+  double tolerance_mm = 0.01;
+  double spacing_mm = 0;  ///< of the places on the outline; 0: from the bound asked for
+  double bound_mm = 0.001;
+  std::size_t max_samples = 5'000'000;
+  unsigned threads = 1;
+};
+
+struct BeamPlace {
+  geom::Point2 p;
+  geom::Vec2 n;             ///< unit, out of the part
+  double deviation_mm = 0;  ///< negative: taken from the part; NaN: not cut
+  double length_mm = 0;     ///< of the outline it stands for
+  std::uint32_t outline = 0;
+};
+struct BeamWorst {
+  double mm = 0;
+  geom::Point2 at;
+  std::uint32_t move = 0;  ///< GOTO
+};
+struct BeamReport {
+  std::vector<BeamPlace> places;
+  BeamWorst gouge, excess;
+  double excess_mean_mm = 0;
+  /// Lengths of the outline beyond the tolerance, times kerf-wide strips are no area: the areas are those of
+  /// the part taken away and of what is left between outline and cut.
+  double gouge_area_mm2 = 0, excess_area_mm2 = 0;
+  double uncut_mm = 0, outline_mm = 0;
+  std::vector<std::uint32_t> uncut_outlines;
+  double spacing_mm = 0, bound_mm = 0;
+};
+
+/// Also found: the beam that crosses the part away from every outline sample (a rapid with the beam on, a
+/// lead-in on the wrong side): the whole swept region is taken against the part, not places on the outline
+/// alone. Errors: no kerf, outlines that cross (geometry), sizes (range).
+Result<BeamReport> check_beam(const std::vector<Outline>& outlines, const cl::Program& program,
+                              const BeamCheckOptions& options);
+
+}  // namespace burin::verify
