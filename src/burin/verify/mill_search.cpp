@@ -75,18 +75,30 @@ MillSearch::MillSearch(const TriangleTree& tree, const MillBody& body, double re
   reset(0);
 }
 
-void MillSearch::reset(double floor) {
+void MillSearch::reset(double floor, double share) {
   floor_ = floor;
+  share_ = share;
   found_ = {};
   found_.mm = floor;
   resolution_ = resolution_asked_;
   allowed_ = evaluations_ + budget_;
+  update();
+}
+
+void MillSearch::know(const MillFinding& found) {
+  found_ = found;
+  update();
+}
+
+void MillSearch::update() {
+  enough_ = found_.mm + (hit() ? std::max(resolution_, share_ * found_.mm) : resolution_);
 }
 
 void MillSearch::spend() {
   if (budget_ == 0 || evaluations_ <= allowed_) return;
   resolution_ *= 2;
   allowed_ += budget_;
+  update();
 }
 
 void MillSearch::set(const Stretch& stretch, std::size_t move) {
@@ -117,26 +129,26 @@ MillSearch::Front MillSearch::root() const {
 
 void MillSearch::narrow(const Placed& mean, double slack, const Front& front, Front& out) {
   const Stretch still{mean, {}, {}, {}, 0};
-  const MillFinding kept = found_;
-  set(still, kept.move);
+  set(still, move_);
   // The bound holds for the distance to the surface of the piece, outside of it, too, and that changes by no
-  // more than the places move. What other moves have spent is not this one's.
-  found_.mm = floor_ - slack + resolution_asked_ - resolution_;
+  // more than the places move. What the move before has found or spent is not for the others.
+  const double kept = enough_;
+  enough_ = floor_ + resolution_asked_ - slack;
   out.clear();
   for (const std::uint32_t index : front) narrow_node(index, {0, 0, mean}, slack, out);
-  found_ = kept;
+  enough_ = kept;
   stretch_ = nullptr;
 }
 
-void MillSearch::narrow_node(std::uint32_t index, const Span& still, double slack, Front& out) {
+void MillSearch::narrow_node(std::uint32_t index, const Span& still, double smallest, Front& out) {
   const TriangleTree::Node& node = tree_.nodes()[index];
   if (settled(of_node(node, still).value)) return;
-  if (node.count > 0 || norm(node.half) <= slack || out.size() >= kMostFront) {
+  if (node.count > 0 || norm(node.half) <= smallest || out.size() >= kMostFront) {
     out.push_back(index);
     return;
   }
-  narrow_node(node.first, still, slack, out);
-  narrow_node(node.first + 1, still, slack, out);
+  narrow_node(node.first, still, smallest, out);
+  narrow_node(node.first + 1, still, smallest, out);
 }
 
 /// All places within the extent over the span: the least of the bounds that the sides of the body give, and
@@ -155,7 +167,7 @@ MillSearch::Upper MillSearch::bound(Point3 center, double radius, const Plane& p
   const double bend = 0.5 * turn_rate_ * (turn_rate_ * far + 2 * way_rate_) * span.half * span.half;
   Upper upper;
   upper.f = b.f;
-  upper.value = std::numeric_limits<double>::infinity();
+  upper.value = body_.inside();
   const auto consider = [&](double f, Vec3 gradient, double space, bool least) {
     const double along = dot(gradient, motion);
     double time = span.half * std::abs(along) + bend;
@@ -285,7 +297,9 @@ void MillSearch::take(const Corners& c, std::uint32_t index, const Span& span, c
   take(body_at(body_, end.tip, end.axis, c[best]).f, c[best], index);
 }
 void MillSearch::take(double depth, Point3 at, std::uint32_t index) {
-  if (depth > found_.mm) found_ = {depth, at, move_, index};
+  if (depth <= found_.mm) return;
+  found_ = {depth, at, move_, index};
+  update();
 }
 
 }  // namespace burin::verify

@@ -31,7 +31,7 @@ Result<void> validate_triangles(const geom::Mesh& mesh);
 
 /// What is found is the depth of a real place at a real moment, and what was looked through since reset() is
 /// nowhere deeper than
-///   max(floor, found) + resolution().
+///   floor + resolution() when nothing was found, else found + max(resolution(), share * found).
 class MillSearch {
  public:
   /// Nodes of the tree below which all lies that can matter.
@@ -42,7 +42,9 @@ class MillSearch {
   MillSearch(const TriangleTree& tree, const MillBody& body, double resolution, std::uint64_t budget = 0);
 
   /// Forgets what was found. What is not deeper than `floor` is not looked for.
-  void reset(double floor);
+  void reset(double floor, double share = 0);
+  /// Goes on from what was found before.
+  void know(const MillFinding& found);
   /// `at`, a place of triangle `triangle`, as a first find on the stretch.
   void seed(const Stretch& stretch, std::size_t move, geom::Point3 at, std::uint32_t triangle);
   void stretch(const Stretch& stretch, std::size_t move, const Front& front);
@@ -79,7 +81,8 @@ class MillSearch {
     double along_time = 0;
   };
 
-  bool settled(double value) const { return value <= found_.mm + resolution_; }
+  bool settled(double value) const { return value <= enough_; }
+  void update();
   void set(const Stretch& stretch, std::size_t move);
   void spend();
 
@@ -89,7 +92,7 @@ class MillSearch {
   Upper of_node(const TriangleTree::Node& node, const Span& span);
   Upper of_triangle(const Corners& c, geom::Vec3 normal, const Span& span);
   std::array<Span, 2> halves(const Span& span) const;
-  void narrow_node(std::uint32_t index, const Span& still, double slack, Front& out);
+  void narrow_node(std::uint32_t index, const Span& still, double smallest, Front& out);
   void box(std::uint32_t index, const Span& span, const Upper& upper);
   void triangle(const Corners& c, std::uint32_t index, geom::Vec3 normal, const Span& span,
                 const Upper& upper, int depth);
@@ -100,7 +103,8 @@ class MillSearch {
   MillBody body_;
   double resolution_asked_, resolution_;
   std::uint64_t budget_, allowed_ = 0;
-  double floor_ = 0;
+  double floor_ = 0, share_ = 0;
+  double enough_ = 0;  ///< cells that are nowhere deeper are dropped
   const Stretch* stretch_ = nullptr;
   double turn_rate_ = 0, way_rate_ = 0;
   std::size_t move_ = 0;
