@@ -44,9 +44,9 @@ bool apt_line(std::string_view line) {
   static constexpr std::string_view kAlone[] = {"PARTNO", "PPRINT", "RAPID", "FINI",   "REMARK",
                                                 "MULTAX", "STOP",   "END",   "OPSTOP", "MACHIN"};
   const std::string word = to_lower(line.substr(0, end));
-  return rest.starts_with("/") || std::any_of(std::begin(kAlone), std::end(kAlone), [&](std::string_view known) {
-           return to_lower(known) == word;
-         });
+  return rest.starts_with("/") ||
+         std::any_of(std::begin(kAlone), std::end(kAlone),
+                     [&](std::string_view known) { return to_lower(known) == word; });
 }
 
 /// "N10 G1 X5.", "g0x1": letters with numbers from the start.
@@ -123,8 +123,10 @@ ProgramKind kind_of_program(std::string_view text) {
     const std::string line = bare(text.substr(at, std::min<std::size_t>(end - at, 1000)));
     at = end + 1;
     if (line.find("BEGIN PGM") != std::string::npos) return ProgramKind::heidenhain;
-    if (apt_line(line)) ++apt;
-    else if (nc_line(line)) ++nc;
+    if (apt_line(line))
+      ++apt;
+    else if (nc_line(line))
+      ++nc;
   }
   if (apt == 0 && nc == 0) return ProgramKind::unknown;
   return apt >= nc ? ProgramKind::cl : ProgramKind::nc;

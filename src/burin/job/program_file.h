@@ -32,8 +32,8 @@ struct ProgramFile {
   /// Tools that comments describe as some CAM systems write them: "(T1 D=6. CR=3. - ...)".
   std::map<int, cl::ToolChange> described;
 };
-/// `machine`: with rotary axes, else nullptr. Errors: of the readers, with file, line and column; a program of
-/// another kind (syntax, says which); one that moves nothing (geometry).
+/// `machine`: with rotary axes, else nullptr. Errors: of the readers, with file, line and column; a program
+/// of another kind (syntax, says which); one that moves nothing (geometry).
 Result<ProgramFile> read_program(std::string_view text, const std::string& file_name,
                                  const kinematics::Kinematics* machine, Diagnostics& diagnostics);
 

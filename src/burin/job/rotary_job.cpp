@@ -209,7 +209,8 @@ Result<RotaryJobFile> read_rotary_job(std::string_view text, const std::string& 
     const toml::table& stock = reader.subtable(root, "stock");
     // The other keys are those of `burin verify`.
     reader.only_keys(stock, {"radius", "kind", "length", "axis", "base", "margin", "lo", "hi", "file"});
-    if (stock.contains("radius")) job.options.stock_radius = reader.number(stock, "radius", kSmallest, kMaxLength);
+    if (stock.contains("radius"))
+      job.options.stock_radius = reader.number(stock, "radius", kSmallest, kMaxLength);
   }
   if (reader.error()) return *reader.error();
   return job;

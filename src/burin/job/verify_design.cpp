@@ -192,8 +192,10 @@ Result<VerifyDesign> load_verify_design(const std::string& path, std::optional<d
     case DesignKind::cad:
     case DesignKind::stl: {
       OrientJobFile job;
-      if (kind_of_design(path, *bytes) == DesignKind::stl) job.part = OrientMesh{name, false};
-      else job.part = OrientSurface{name, {}, false};
+      if (kind_of_design(path, *bytes) == DesignKind::stl)
+        job.part = OrientMesh{name, false};
+      else
+        job.part = OrientSurface{name, {}, false};
       if (!out.tolerance_mm) out.tolerance_mm = kTolerance_mm;
       loaded = load_faces(std::move(job), once, out, diagnostics);
       break;

@@ -105,10 +105,10 @@ class Reader {
                      std::move(design_.described), box.diagonal(), diagnostics_);
     tools.program(in_.program);
     const verify::ToolSource source = [&tools](const cl::ToolChange& change) { return tools(change); };
-    auto path = !in_.joints.empty()
-                    ? verify::make_checked_path(in_.program, in_.joints, tip_straight_, *in_.machine, source, {})
-                : as_joints() ? posted(source)
-                              : verify::make_checked_path(in_.program, source, {});
+    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, tip_straight_,
+                                                                *in_.machine, source, {})
+                : as_joints()       ? posted(source)
+                                    : verify::make_checked_path(in_.program, source, {});
     if (!path) {
       Error error = path.error();
       if (error.where.line > 0) error.where.file = options_.path;
@@ -125,7 +125,8 @@ class Reader {
            (options_.joints || design_.operation == "rotary");
   }
 
-  /// The moves as a control without tool-centre-point control gets them; what is found is said of the CL data.
+  /// The moves as a control without tool-centre-point control gets them; what is found is said of the CL
+  /// data.
   Result<verify::CheckedPath> posted(const verify::ToolSource& source) {
     kinematics::JointPathOptions post;
     post.tolerance_mm = *design_.tolerance_mm;
@@ -143,13 +144,16 @@ class Reader {
       if (!cl::is_motion(record)) continue;
       for (; next < moves.size() && moves[next].record == r; ++next) {
         const cl::Pose to = in_.machine->forward(moves[next].to);
-        if (moves[next].rapid) program.add(cl::Rapid{to}, in_.program.source[r]);
-        else program.add(cl::Feed{to}, in_.program.source[r]);
+        if (moves[next].rapid)
+          program.add(cl::Rapid{to}, in_.program.source[r]);
+        else
+          program.add(cl::Feed{to}, in_.program.source[r]);
         in_.joints.push_back(moves[next].to);
         move_of.push_back(static_cast<std::uint32_t>(origins.size()));
       }
       const std::uint32_t line = in_.program.source[r];
-      origins.push_back({r, line == cl::Program::kNoSource ? 0 : line, std::holds_alternative<cl::Rapid>(record)});
+      origins.push_back(
+          {r, line == cl::Program::kNoSource ? 0 : line, std::holds_alternative<cl::Rapid>(record)});
     }
     auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, {});
     in_.joints.clear();  // they do not belong to the motions of the program one by one
@@ -261,9 +265,9 @@ Result<void> run_collisions(const VerifyInput& input, const VerifyOptions& optio
   auto report = verify::find_collisions(input.design, input.obstacles, input.path, colliding, progress);
   if (!report) return report.error();
   if (report->count > report->collisions.size())
-    diagnostics.info("collisions_not_listed",
-                     "of " + std::to_string(report->count) + " collisions the " +
-                         std::to_string(report->collisions.size()) + " deepest are listed");
+    diagnostics.info("collisions_not_listed", "of " + std::to_string(report->count) + " collisions the " +
+                                                  std::to_string(report->collisions.size()) +
+                                                  " deepest are listed");
   result.collisions = std::move(report->collisions);
   return {};
 }

@@ -25,7 +25,8 @@ Point3 point(TomlReader& reader, const toml::table& table, std::string_view key,
       reader.triple(table, key, std::vector<double>{fallback.x, fallback.y, fallback.z});
   if (reader.error() || v.size() != 3) return fallback;
   for (const double x : v)
-    if (!(std::abs(x) <= kMaxLength)) reader.fail(*table.get(key), "\"" + std::string(key) + "\" is beyond 100 m");
+    if (!(std::abs(x) <= kMaxLength))
+      reader.fail(*table.get(key), "\"" + std::string(key) + "\" is beyond 100 m");
   return {v[0], v[1], v[2]};
 }
 
@@ -53,8 +54,10 @@ JobTool read_tool(TomlReader& reader, const toml::table& table, bool rotary) {
       reader.fail(*table.get("number"), "\"number\" is not a whole number (0 to 999999)");
     tool.number = static_cast<int>(number);
   }
-  if (kind == "ball") tool.shape = read_ball_tool(reader, table, {"number"});
-  else tool.shape = read_mill(reader, table, {"number"});
+  if (kind == "ball")
+    tool.shape = read_ball_tool(reader, table, {"number"});
+  else
+    tool.shape = read_mill(reader, table, {"number"});
   return tool;
 }
 
@@ -70,8 +73,10 @@ void read_tools(TomlReader& reader, const toml::table& root, VerifyTables& table
       JobTool tool = read_tool(reader, *table, tables.rotary);
       for (const JobTool& other : tables.tools)
         if (other.number == tool.number)
-          reader.fail(*table, tool.number ? "tool " + std::to_string(*tool.number) + " a second time (one of each number)"
-                                          : "several tools without \"number\" (number = 1, as T1 in the program)");
+          reader.fail(*table,
+                      tool.number
+                          ? "tool " + std::to_string(*tool.number) + " a second time (one of each number)"
+                          : "several tools without \"number\" (number = 1, as T1 in the program)");
       tables.tools.push_back(std::move(tool));
     }
   }
@@ -107,12 +112,13 @@ StockTable read_cylinder(TomlReader& reader, const toml::table& table, bool rota
   if (rotary) cylinder.axis = {1, 0, 0};
   if (const toml::node* node = table.get("axis")) {
     if (node->is_string()) {
-      cylinder.axis = reader.choice<Vec3>(table, "axis", {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}},
-                                          cylinder.axis);
+      cylinder.axis = reader.choice<Vec3>(
+          table, "axis", {{"x", {1, 0, 0}}, {"y", {0, 1, 0}}, {"z", {0, 0, 1}}}, cylinder.axis);
     } else {
       const Point3 a = point(reader, table, "axis");
       const Vec3 v{a.x, a.y, a.z};
-      if (!reader.error() && !(norm(v) > 0)) reader.fail(*node, "\"axis\" has no direction (\"x\", or three numbers)");
+      if (!reader.error() && !(norm(v) > 0))
+        reader.fail(*node, "\"axis\" has no direction (\"x\", or three numbers)");
       cylinder.axis = unit(v);
     }
   }
@@ -182,24 +188,31 @@ Result<VerifyTables> read_verify_tables(std::string_view text, const std::string
   VerifyTables tables;
   const toml::table& part = reader.subtable(root, "part");
   tables.rotary = is_rotary(root, part);
-  if (tables.rotary) tables.section = read_rotary_part(reader, part);
-  else read_orient_part(reader, part, false, tables.faces);
+  if (tables.rotary)
+    tables.section = read_rotary_part(reader, part);
+  else
+    read_orient_part(reader, part, false, tables.faces);
   read_tools(reader, root, tables);
   if (root.contains("operation")) {
     const toml::table& operation = reader.subtable(root, "operation");
-    if (operation.contains("tolerance")) tables.tolerance_mm = reader.number(operation, "tolerance", 1e-5, 10);
+    if (operation.contains("tolerance"))
+      tables.tolerance_mm = reader.number(operation, "tolerance", 1e-5, 10);
   }
   if (root.contains("machine")) tables.machine = read_machine(reader, reader.subtable(root, "machine"));
-  if (root.contains("stock")) tables.stock = read_stock(reader, reader.subtable(root, "stock"), tables.rotary);
+  if (root.contains("stock"))
+    tables.stock = read_stock(reader, reader.subtable(root, "stock"), tables.rotary);
   if (reader.error()) return *reader.error();
   return tables;
 }
 
 Result<removal::Stock> make_stock(const StockTable& table, const geom::Mesh& design, geom::Mesh file) {
   removal::Stock stock;
-  if (const auto* block = std::get_if<BlockTable>(&table)) stock = make(*block, design);
-  else if (const auto* cylinder = std::get_if<CylinderTable>(&table)) stock = make(*cylinder, design);
-  else stock = removal::MeshStock{std::move(file)};
+  if (const auto* block = std::get_if<BlockTable>(&table))
+    stock = make(*block, design);
+  else if (const auto* cylinder = std::get_if<CylinderTable>(&table))
+    stock = make(*cylinder, design);
+  else
+    stock = removal::MeshStock{std::move(file)};
   if (auto ok = removal::validate(stock); !ok) return ok.error();
   return stock;
 }

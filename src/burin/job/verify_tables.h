@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `burin verify` takes from a job file of any command: [part], [tool] (or several [[tools]]), [operation]
-// tolerance, [machine], [stock]. Internal to job; the rest is the planners'. mm. docs/verify.md
+// What `burin verify` takes from a job file of any command: [part], [tool] (or several [[tools]]),
+// [operation] tolerance, [machine], [stock]. Internal to job; the rest is the planners'. mm. docs/verify.md
 #pragma once
 
 #include <optional>
@@ -50,8 +50,8 @@ struct VerifyTables {
   std::optional<StockTable> stock;  ///< file paths as in the job
 };
 
-/// Unknown keys of these tables are errors that name the nearest known one; other tables and the other keys of
-/// [operation] are not looked at.
+/// Unknown keys of these tables are errors that name the nearest known one; other tables and the other keys
+/// of [operation] are not looked at.
 Result<VerifyTables> read_verify_tables(std::string_view toml, const std::string& file_name);
 
 /// Margin of stock that nothing else is said of.

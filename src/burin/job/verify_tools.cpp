@@ -136,12 +136,13 @@ Result<CheckedMill> ToolFinder::operator()(const cl::ToolChange& change) {
   } else {
     const std::string which =
         change.number > 0 ? "tool " + std::to_string(change.number) : std::string("the tool");
-    return Error{ErrorCode::usage,
-                 "nothing says what " + which +
-                     (job_.empty() ? " is" : " is: the job does not describe it, or only one of several tools") +
-                     " (--tool-diameter with --tool-corner, [tool] or [[tools]] with number in a job file, "
-                     "CUTTER/d,r in CL data)",
-                 {}};
+    return Error{
+        ErrorCode::usage,
+        "nothing says what " + which +
+            (job_.empty() ? " is" : " is: the job does not describe it, or only one of several tools") +
+            " (--tool-diameter with --tool-corner, [tool] or [[tools]] with number in a job file, "
+            "CUTTER/d,r in CL data)",
+        {}};
   }
   if (!(mill.corner_radius <= mill.radius) || !(mill.length >= mill.corner_radius))
     return Error{ErrorCode::range,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which tool a program moves: what the command line says, else the job, else CUTTER/ of the CL data, else what
-// the comments of the program say. Internal to job. mm.
+// Which tool a program moves: what the command line says, else the job, else CUTTER/ of the CL data, else
+// what the comments of the program say. Internal to job. mm.
 #pragma once
 
 #include <map>
