@@ -21,7 +21,7 @@ export function step(scene: Scene, store: Store, by: "node" | "move" | "pass", d
 }
 export function changeSpeed(store: Store, direction: number): void {
   const now = store.state.speed;
-  const next = direction > 0 ? SPEEDS.find(s => s > now * 1.001) : SPEEDS.findLast(s => s < now * 0.999);
+  const next = direction > 0 ? SPEEDS.find(s => s > now * 1.001) : SPEEDS.filter(s => s < now * 0.999).pop();
   if (next !== undefined) store.set({ speed: next });
 }
 function speedMenu(scene: Scene, store: Store): HTMLSelectElement {

@@ -20,7 +20,6 @@ constexpr double kSmallest = 1e-4;  ///< mm: lengths below are slips too
 constexpr std::size_t kMostFiles = 1000;
 constexpr std::size_t kMostFaces = 100'000;
 constexpr double kMaxTilt = 89;  ///< degrees: beyond, a mill lies on its side
-constexpr int kMostPaths = 100'000;
 
 bool has(const toml::table& table, std::string_view key) {
   return table.get(key) != nullptr;
@@ -218,7 +217,7 @@ void read_paths(TomlReader& reader, const toml::table& table, bool contacts, ori
   }
   if (has(table, "side_step")) o.side_step_mm = reader.number(table, "side_step", kSmallest, kMaxLength);
   if (has(table, "path_count"))
-    o.path_count = whole(reader, table, "path_count", 1, kMostPaths, std::nullopt);
+    o.path_count = whole(reader, table, "path_count", 1, orient::kMostPaths, std::nullopt);
   if (o.side_step_mm && o.path_count)
     reader.fail(*table.get("path_count"), "\"path_count\" beside \"side_step\" (one or the other)");
   if (has(table, "max_step")) paths.max_step_mm = reader.number(table, "max_step", kSmallest, kMaxLength);
