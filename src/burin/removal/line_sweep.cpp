@@ -118,6 +118,8 @@ Covered LineSweep::turning(double du, double dv) {
     const double h0 = (body_.low - up) / e3, h1 = (body_.high - up) / e3;
     h = std::clamp(h, std::min(h0, h1), std::max(h0, h1));
   }
+  const double span = body_.radius + std::max(std::abs(body_.low), std::abs(body_.high));
+  h = std::clamp(h, -span, span);  // no place of the tool is farther
   turned_ = frame(way + h * along_turn_);
   frame_a_ = frame_b_ = &turned_;
   Covered c = solve(turned_, du, dv);
@@ -225,13 +227,16 @@ void LineSweep::slab_edge(const Frame& f, const Place& p, double radius, double 
   }
 }
 
-/// A sphere about the axis at `height` that moves along a segment.
+/// The lower half of a sphere about the axis at `height` that moves along a segment; its upper half is the
+/// cylinder's matter.
 void LineSweep::sphere(const Frame& f, const Place& p, double radius, double height, Covered& out) {
   const double z = p.z - height, r2 = radius * radius;
   for (const double time : {-0.5, 0.5}) {
     const double x = p.x - time * f.w1, zt = z - time * f.w3;
     const Roots r = roots(1, x * f.e1 + p.y * f.e2 + zt * f.e3, x * x + p.y * p.y + zt * zt - r2);
-    if (r.any) out.add(r.lo, time), out.add(r.hi, time);
+    if (!r.any) continue;
+    for (const double h : {r.lo, r.hi})
+      if (zt + h * f.e3 <= 0) out.add(h, time);
   }
   const double way = std::hypot(f.w1, f.w3);
   if (!(way > kNone)) return;
@@ -243,7 +248,7 @@ void LineSweep::sphere(const Frame& f, const Place& p, double radius, double hei
   if (!r.any) return;
   for (const double h : {r.lo, r.hi}) {
     const double time = (done + h * along) / way;
-    if (std::abs(time) <= 0.5) out.add(h, time);
+    if (std::abs(time) <= 0.5 && z + h * f.e3 - time * f.w3 <= 0) out.add(h, time);
   }
 }
 
@@ -303,7 +308,8 @@ void LineSweep::rounded_edge(const Frame& f, const Place& p, Covered& out) const
       double slope = 0;
       const double gap = nearest_to_disc(f, p, h, time, slope) - body_.corner;
       if (gap <= 0.1 * tolerance_) {
-        out.add(h, time);
+        // Above the disc the edge is no longer round: the cylinder's matter.
+        if (p.z + h * f.e3 - time * f.w3 <= body_.low + body_.corner) out.add(h, time);
         return;
       }
       if (!(sense * slope < 0)) return;  // it only gets farther
