@@ -45,14 +45,14 @@ function readouts(scene: Scene, store: Store): { time: HTMLElement; more: HTMLEl
   const more = el("dl", { class: "readouts nums" }), cells = new Map<string, HTMLElement>();
   const cell = (name: string, wide = "") => { const d = el("dd", {}); more.append(el("div", { class: wide }, el("dt", {}, name), d)); cells.set(name, d); };
   for (const n of ["X", "Y", "Z"]) cell(n);
-  if (path.axis) cell("axis", "w3");
   const letters = path.rotary ? (scene.machine?.axes.slice(0, 2).map(a => a.letter) ?? ["A", "C"]) : [];
   for (const l of letters) cell(l);
   cell("F");
+  if (scene.program.lines > 0) cell("line");
+  cell("move");
   if (scene.tools.length > 0) cell("tool", "w2");
   if (scene.groups.length > 0) cell("in", "w2");
-  cell("move");
-  if (scene.program.lines > 0) cell("line");
+  if (path.axis) cell("axis", "w3");
   const say = (name: string, text: string) => { const c = cells.get(name); if (c && c.textContent !== text) c.textContent = text; };
   const show = () => {
     if (path.count === 0) return;

@@ -119,6 +119,9 @@ export function makeToolbar(scene: Scene, store: Store): HTMLElement {
     toggle("ruler", "Measure a distance", "M", store, s => s.measuring, ["measuring"], () => toggleMeasuring(store)),
     turns(scene) && toggle("turn", "As the machine does it: table axes turn the part", "J", store, s => s.asMachine, ["asMachine"], () => store.set({ asMachine: !store.state.asMachine })), el("i", { class: "gap" }),
     showMenu(scene, store), el("label", { class: "check" }, el("span", { class: "soft wide-only" }, "Path by"), colour),
-    heat && toggle("deviation", "Deviation on the part", "D", store, s => s.heat, ["heat"], () => store.set({ heat: !store.state.heat }), "Deviation"));
-  return el("div", { class: "toolbar" }, row, sectionBar(scene, store), measureBar(store));
+    heat && toggle("deviation", "Deviation on the part", "D", store, s => s.heat, ["heat"], () => store.set({ heat: !store.state.heat }), "Heat map"));
+  const bar = el("div", { class: "toolbar" }, row, sectionBar(scene, store), measureBar(store));
+  const ROOM = 730; // for everything in words
+  new ResizeObserver(() => bar.classList.toggle("tight", bar.clientWidth < ROOM)).observe(bar);
+  return bar;
 }
