@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "burin/geom/point_tools.h"
@@ -19,9 +18,6 @@ constexpr int kMostHalvings = 200;
 // A front of more nodes than this costs more in every move than it spares.
 constexpr std::size_t kMostFront = 64;
 
-Point3 middle(const std::array<Point3, 3>& c) {
-  return lerp(lerp(c[0], c[1], 0.5), c[2], 1.0 / 3);
-}
 /// Both parts, the one that is nearer or deeper in its middle first.
 template <class Bound, class First, class Second>
 void both(const Bound& a, const Bound& b, First&& first, Second&& second) {
@@ -103,8 +99,6 @@ void MillSearch::spend() {
 
 void MillSearch::set(const Stretch& stretch, std::size_t move) {
   stretch_ = &stretch;
-  turn_rate_ = norm(stretch.turn);
-  way_rate_ = norm(stretch.way);
   move_ = move;
 }
 
@@ -119,7 +113,7 @@ void MillSearch::seed(const Stretch& stretch, std::size_t move, Point3 at, std::
 
 void MillSearch::stretch(const Stretch& stretch, std::size_t move, const Front& front) {
   set(stretch, move);
-  const Span whole{0.5, 0.5, stretch.at(0.5)};
+  const Span whole = Span::whole(stretch);
   for (const std::uint32_t index : front) box(index, whole, of_node(tree_.nodes()[index], whole));
 }
 
@@ -151,88 +145,23 @@ void MillSearch::narrow_node(std::uint32_t index, const Span& still, double smal
   narrow_node(node.first + 1, still, smallest, out);
 }
 
-/// All places within the extent over the span: the least of the bounds that the sides of the body give, and
-/// of a mean of bottom and side, whose edge is where flat ends cut deepest. `directions(g)`: what three
-/// directions that span the extent add to g's function; `most(those)`: what they add together at most.
-/// `radius`: of a ball about the centre that holds the extent.
-template <class Directions, class Most>
-MillSearch::Upper MillSearch::bound(Point3 center, double radius, const Plane& plane, const Span& span,
-                                    Directions&& directions, Most&& most) {
+template <class Extent>
+Upper MillSearch::bound(const Extent& extent, const Span& span) {
   ++evaluations_;
-  const BodyAt b = body_at(body_, span.at.tip, span.at.axis, center);
-  // How a place of the part moves as seen from the tool, to the first order and what is left of it.
-  const Vec3 from_tip = center - span.at.tip, turn = stretch_->turn;
-  const Vec3 motion = -(stretch_->way + cross(turn, from_tip));
-  const double far = norm(from_tip) + radius + way_rate_ * span.half;
-  const double bend = 0.5 * turn_rate_ * (turn_rate_ * far + 2 * way_rate_) * span.half * span.half;
-  Upper upper;
-  upper.f = b.f;
-  upper.value = body_.inside();
-  const auto consider = [&](double f, Vec3 gradient, double space, bool least) {
-    const double along = dot(gradient, motion);
-    double time = span.half * std::abs(along) + bend;
-    // (gradient x turn) . (place - centre): of how differently the places move.
-    if (turn_rate_ > 0)
-      time += span.half *
-              std::max(most(directions(cross(gradient, turn))), most(directions(cross(turn, gradient))));
-    upper.value = std::min(upper.value, f + space + time);
-    if (least) upper.space = space, upper.time = time, upper.gradient = gradient, upper.along_time = along;
-  };
-  for (std::size_t i = 0; i < b.count; ++i) {
-    consider(b.sides[i].f, b.sides[i].gradient, most(directions(b.sides[i].gradient)), i == b.least);
-    if (settled(upper.value)) return upper;
-  }
-  const double side = dot(plane.normal, upper.gradient) < 0 ? -1 : 1;
-  const Vec3 n = side * plane.normal;
-  consider(body_.reach(span.at.axis, -n) + dot(n, from_tip), n, side > 0 ? plane.most : -plane.least, false);
-  if (settled(upper.value)) return upper;
-  // The mean of bottom and side that changes least over extent and span.
-  const auto one = directions(b.sides[0].gradient), two = directions(b.sides[1].gradient);
-  const double time_one = span.half * dot(b.sides[0].gradient, motion);
-  const double time_two = span.half * dot(b.sides[1].gradient, motion);
-  double over = time_two * (time_two - time_one), under = (time_two - time_one) * (time_two - time_one);
-  for (std::size_t i = 0; i < 3; ++i) {
-    over += two[i] * (two[i] - one[i]);
-    under += (two[i] - one[i]) * (two[i] - one[i]);
-  }
-  if (under > 0 && over > 0 && over < under) {
-    const double share = over / under;
-    const Vec3 gradient = share * b.sides[0].gradient + (1 - share) * b.sides[1].gradient;
-    consider(share * b.sides[0].f + (1 - share) * b.sides[1].f, gradient, most(directions(gradient)), false);
-  }
+  Upper upper = upper_bound(body_, *stretch_, span, extent, enough_);
+  upper.value = std::min(upper.value, body_.inside());
   return upper;
 }
-
-MillSearch::Upper MillSearch::of_node(const TriangleTree::Node& node, const Span& span) {
-  return bound(
-      node.center, norm(node.half), {node.normal, node.most, node.least}, span,
-      [&](Vec3 g) {
-        return std::array{g.x * node.half.x, g.y * node.half.y, g.z * node.half.z};
-      },
-      [](const std::array<double, 3>& d) { return std::abs(d[0]) + std::abs(d[1]) + std::abs(d[2]); });
+Upper MillSearch::of_node(const TriangleTree::Node& node, const Span& span) {
+  const Vec3 h = node.half;
+  return bound(BoxExtent{node.center,
+                         norm(h),
+                         {node.normal, node.most, node.least},
+                         {Vec3{h.x, 0, 0}, Vec3{0, h.y, 0}, Vec3{0, 0, h.z}}},
+               span);
 }
-
-MillSearch::Upper MillSearch::of_triangle(const Corners& c, Vec3 normal, const Span& span) {
-  const Point3 m = middle(c);
-  const double radius = std::max({distance(m, c[0]), distance(m, c[1]), distance(m, c[2])});
-  return bound(
-      m, radius, {normal, 0, 0}, span,
-      [&](Vec3 g) {
-        return std::array{dot(g, c[0] - m), dot(g, c[1] - m), dot(g, c[2] - m)};
-      },
-      [](const std::array<double, 3>& d) {
-        return std::max({d[0], d[1], d[2]});
-      });
-}
-
-std::array<MillSearch::Span, 2> MillSearch::halves(const Span& span) const {
-  std::array<Span, 2> out;
-  const double half = 0.5 * span.half;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const double middle = span.middle + (i == 0 ? -half : half);
-    out[i] = {middle, half, stretch_->at(middle)};
-  }
-  return out;
+Upper MillSearch::of_triangle(const Corners& c, Vec3 normal, const Span& span) {
+  return bound(TriangleExtent(c, normal), span);
 }
 
 void MillSearch::box(std::uint32_t index, const Span& span, const Upper& upper) {
@@ -241,7 +170,7 @@ void MillSearch::box(std::uint32_t index, const Span& span, const Upper& upper) 
   const TriangleTree::Node& node = tree_.nodes()[index];
   // Below the resolution time is halved for triangles only, where what is found settles the rest.
   if (upper.time > std::max(upper.space, resolution_)) {
-    const std::array<Span, 2> parts = halves(span);
+    const std::array<Span, 2> parts = span.halves(*stretch_);
     const Upper a = of_node(node, parts[0]), b = of_node(node, parts[1]);
     both(
         a, b, [&] { box(index, parts[0], a); }, [&] { box(index, parts[1], b); });
@@ -268,7 +197,7 @@ void MillSearch::triangle(const Corners& c, std::uint32_t index, Vec3 normal, co
   take(c, index, span, upper);
   if (settled(upper.value) || depth >= kMostHalvings) return;
   if (upper.time > upper.space) {
-    const std::array<Span, 2> parts = halves(span);
+    const std::array<Span, 2> parts = span.halves(*stretch_);
     const Upper a = of_triangle(c, normal, parts[0]), b = of_triangle(c, normal, parts[1]);
     both(
         a, b, [&] { triangle(c, index, normal, parts[0], a, depth + 1); },
@@ -288,7 +217,7 @@ void MillSearch::triangle(const Corners& c, std::uint32_t index, Vec3 normal, co
 
 /// What is surely there: in the middle, and at the corner and the end of the time towards which it grows.
 void MillSearch::take(const Corners& c, std::uint32_t index, const Span& span, const Upper& upper) {
-  take(upper.f, middle(c), index);
+  take(upper.f, lerp(lerp(c[0], c[1], 0.5), c[2], 1.0 / 3), index);
   std::size_t best = 0;
   for (std::size_t i = 1; i < 3; ++i)
     if (dot(upper.gradient, c[i] - c[best]) > 0) best = i;

@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "burin/base/result.h"
-#include "burin/verify/mill_body.h"
+#include "burin/verify/mill_bound.h"
 #include "burin/verify/mill_check.h"
-#include "burin/verify/mill_motion.h"
 #include "burin/verify/triangle_tree.h"
 
 namespace burin::verify {
@@ -63,35 +62,16 @@ class MillSearch {
 
  private:
   using Corners = std::array<geom::Point3, 3>;
-  struct Span {
-    double middle = 0, half = 0;  ///< of the time
-    Placed at;                    ///< in the middle
-  };
-  /// A unit normal and how far the extent goes from its centre along it.
-  struct Plane {
-    geom::Vec3 normal;
-    double most = 0, least = 0;
-  };
-  struct Upper {
-    double value = 0;  ///< no place is deeper
-    double f = 0;      ///< in the middle
-    // Of the side that is the least there; what it may grow by is the reason to divide.
-    geom::Vec3 gradient;
-    double space = 0, time = 0;
-    double along_time = 0;
-  };
 
   bool settled(double value) const { return value <= enough_; }
   void update();
   void set(const Stretch& stretch, std::size_t move);
   void spend();
 
-  template <class Directions, class Most>
-  Upper bound(geom::Point3 center, double radius, const Plane& plane, const Span& span,
-              Directions&& directions, Most&& most);
+  template <class Extent>
+  Upper bound(const Extent& extent, const Span& span);
   Upper of_node(const TriangleTree::Node& node, const Span& span);
   Upper of_triangle(const Corners& c, geom::Vec3 normal, const Span& span);
-  std::array<Span, 2> halves(const Span& span) const;
   void narrow_node(std::uint32_t index, const Span& still, double smallest, Front& out);
   void box(std::uint32_t index, const Span& span, const Upper& upper);
   void triangle(const Corners& c, std::uint32_t index, geom::Vec3 normal, const Span& span,
@@ -106,7 +86,6 @@ class MillSearch {
   double floor_ = 0, share_ = 0;
   double enough_ = 0;  ///< cells that are nowhere deeper are dropped
   const Stretch* stretch_ = nullptr;
-  double turn_rate_ = 0, way_rate_ = 0;
   std::size_t move_ = 0;
   MillFinding found_;
   std::uint64_t evaluations_ = 0;
