@@ -363,7 +363,7 @@ Tree::NearPair Tree::nearest(const Segment& s, double limit) const {
   return best;
 }
 
-int Tree::winding(Point2 p) const {
+int Tree::winding(Point2 p, std::uint32_t first, std::uint32_t end) const {
   int sum = 0;
   std::uint32_t stack[kDepth];
   int top = 0;
@@ -377,7 +377,9 @@ int Tree::winding(Point2 p) const {
       stack[top++] = at + 1;
       continue;
     }
-    for (std::uint32_t i = node.first; i < node.end; ++i) sum += crossings(segments_[order_[i]], p);
+    for (std::uint32_t i = node.first; i < node.end; ++i) {
+      if (order_[i] < first || order_[i] >= end) sum += crossings(segments_[order_[i]], p);
+    }
   }
   return sum;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines and arcs of the plane against each other: distances, bounds over stretches, a tree. Internal to the
-// check of beams. Arcs here turn by a quarter at most (quarters()), so that their tangents meet and their
-// sector is convex. mm. docs/verify-beam.md
+// Lines and arcs of the plane against each other: distances, bounds over stretches, a tree. For the check of
+// beams and what reads for it. Arcs here turn by a quarter at most (quarters()), so that their tangents meet
+// and their sector is convex. mm. docs/verify-beam.md
 #pragma once
 
 #include <cstdint>
@@ -68,8 +68,9 @@ class Tree {
     std::uint32_t segment = 0;
   };
   NearPair nearest(const Segment& s, double limit) const;
-  /// Of all segments together, which are closed curves, about p.
-  int winding(Point2 p) const;
+  /// Of all segments together, which are closed curves, about p; those with numbers in [first, end), a closed
+  /// curve as well, do not count.
+  int winding(Point2 p, std::uint32_t first = 0, std::uint32_t end = 0) const;
 
   /// Calls visit(index) for the segments whose box, grown by `by`, the ray p + s n meets for s in [0, reach];
   /// visit returns the reach from there on.

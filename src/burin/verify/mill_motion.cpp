@@ -39,6 +39,10 @@ double reach_of(const geom::Mesh& mesh, const kinematics::Kinematics& machine, d
   return most + apart;
 }
 
+Error wrong_move(std::size_t move, const std::string& what) {
+  return {ErrorCode::geometry, "move " + std::to_string(move) + ": " + what, {}};
+}
+
 }  // namespace
 
 Stretch Stretch::between(const cl::Pose& a, const cl::Pose& b) {
@@ -63,27 +67,33 @@ StretchedMotion::StretchedMotion(const geom::Mesh& mesh, const MillMotion& motio
   if (joints_ && joints_->machine) reach_ = reach_of(mesh, *joints_->machine, span);
 }
 
+Result<void> validate_pose(const cl::Pose& pose, std::size_t move) {
+  if (!is_finite(pose.tip) || !is_finite(pose.axis)) return wrong_move(move, "a pose that is not finite");
+  if (std::abs(norm(pose.axis) - 1) > kUnit) return wrong_move(move, "the tool axis is no unit vector");
+  return {};
+}
+Result<void> validate_turn(const cl::Pose& from, const cl::Pose& to, std::size_t move) {
+  if (dot(from.axis, to.axis) < 0 && norm(cross(from.axis, to.axis)) < kOpposite)
+    return wrong_move(move,
+                      "the axis turns by half a turn, which no great circle decides (put a pose between)");
+  return {};
+}
+
 Result<void> StretchedMotion::validate() const {
-  const auto wrong = [](std::size_t i, const std::string& what) {
-    return Error{ErrorCode::geometry, "move " + std::to_string(i) + ": " + what, {}};
-  };
   if (joints_) {
     if (!joints_->machine) return Error{ErrorCode::usage, "joint moves need a machine", {}};
     for (std::size_t i = 0; i < joints_->joints.size(); ++i) {
       for (const double x : joints_->joints[i].linear)
-        if (!std::isfinite(x)) return wrong(i, "a position that is not finite");
+        if (!std::isfinite(x)) return wrong_move(i, "a position that is not finite");
       for (const double x : joints_->joints[i].rotary)
-        if (!std::isfinite(x)) return wrong(i, "a position that is not finite");
+        if (!std::isfinite(x)) return wrong_move(i, "a position that is not finite");
     }
     return {};
   }
   for (std::size_t i = 0; i < poses_->size(); ++i) {
-    const cl::Pose& p = (*poses_)[i];
-    if (!is_finite(p.tip) || !is_finite(p.axis)) return wrong(i, "a pose that is not finite");
-    if (std::abs(norm(p.axis) - 1) > kUnit) return wrong(i, "the tool axis is no unit vector");
-    if (i > 0 && dot((*poses_)[i - 1].axis, p.axis) < 0 &&
-        norm(cross((*poses_)[i - 1].axis, p.axis)) < kOpposite)
-      return wrong(i, "the axis turns by half a turn, which no great circle decides (put a pose between)");
+    if (auto ok = validate_pose((*poses_)[i], i); !ok) return ok.error();
+    if (i > 0)
+      if (auto ok = validate_turn((*poses_)[i - 1], (*poses_)[i], i); !ok) return ok.error();
   }
   return {};
 }

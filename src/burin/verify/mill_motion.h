@@ -32,6 +32,11 @@ struct Stretch {
   }
 };
 
+/// Finite, with a unit vector for an axis; a way between that a great circle decides. The errors (geometry)
+/// name the move.
+Result<void> validate_pose(const cl::Pose& pose, std::size_t move);
+Result<void> validate_turn(const cl::Pose& from, const cl::Pose& to, std::size_t move);
+
 class StretchedMotion {
  public:
   /// `span`: no place of the tool is farther from the tip. Keeps references.
