@@ -46,8 +46,8 @@ export function surfaceMaterial(ctx: Context, o: SurfaceOptions): ShaderMaterial
         if (heat > 0.5) base = vValue < -1e20 ? vec3(0.6, 0.62, 0.66) : texture(ramp, vec2(clamp(0.5 + 0.5 * vValue / range, 0.002, 0.998), 0.5)).rgb;
         vec3 n = normalize(vNormal);
         if (!gl_FrontFacing) n = -n;
-        const vec3 key = normalize(vec3(0.35, 0.55, 0.8)), fill = normalize(vec3(-0.7, -0.1, 0.45)), halfway = normalize(vec3(0.35, 0.55, 1.8));
-        float light = 0.46 + 0.5 * max(dot(n, key), 0.0) + 0.17 * max(dot(n, fill), 0.0);
+        const vec3 key = normalize(vec3(0.35, 0.55, 0.8)), fill = normalize(vec3(-0.6, -0.25, 0.6)), halfway = normalize(vec3(0.35, 0.55, 1.8));
+        float light = 0.5 + 0.42 * max(dot(n, key), 0.0) + 0.28 * max(dot(n, fill), 0.0);
         result = vec4(base * light + shine * pow(max(dot(n, halfway), 0.0), 30.0), opacity);
       }`,
   });
