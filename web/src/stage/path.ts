@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path: one chain of ways whose colours change without the rest; what lies ahead of the time is told apart in the shader,
 // so that playing changes one number only. Under a beam the band that it takes away, true to scale.
-import { Color, GLSL3, Group, type Mesh, ShaderMaterial } from "three";
+import { Color, GLSL3, Group, type Mesh, NotEqualStencilFunc, ReplaceStencilOp, ShaderMaterial, type Vector3 } from "three";
 import { colouring, type Rgb } from "../colours";
-import { Kind } from "../scene";
+import { Kind, type Path } from "../scene";
 import type { Context } from "./context";
 import { CLIP_FRAGMENT, CLIP_VERTEX } from "./materials";
 import { Chain, FETCH, Look, ribbonMaterial } from "./ribbon";
 
-// The band that a beam takes away, true to scale, flat in z. All at one depth: where bands overlap only the first is painted.
+// The band that a beam takes away, true to scale, flat in z. Where bands overlap only the first is painted (stencil).
 const BAND_VERTEX = `
 ${FETCH}
 uniform float now, kerf, ahead;
@@ -38,6 +38,8 @@ const FADED = 0.3;
 /** A share of the depth: lines on a surface are seen. */
 const NEARER = 0.0006;
 const STEPS = 1024; // of a scale's colours
+const COVER = 0.45; // share of the space between lines that they may fill
+const LEAST_WIDTH = 0.9, LEAST_OPACITY = 0.4, OVER_HEAT = 0.6;
 
 export class PathLines {
   readonly group = new Group();
@@ -48,10 +50,13 @@ export class PathLines {
   private picked: Mark;
   private moving = { value: 0 };
   private ahead = { value: 1 };
+  private spacing: number; // mm, about
 
-  constructor(private ctx: Context) {
+  constructor(private ctx: Context, size: Vector3) {
+    const sides = [size.x, size.y, size.z].sort((a, b) => b - a);
+    this.spacing = sides[0]! * Math.max(sides[1]!, 0.1 * sides[0]!) / Math.max(cutLength(ctx.scene.path), 1e-6);
     this.chain = new Chain(ctx.scene.path.point);
-    this.material = ribbonMaterial(ctx, this.chain, { width: WIDTH, nearer: NEARER, now: this.moving, ahead: this.ahead, faded: FADED });
+    this.material = ribbonMaterial(ctx, this.chain, { width: WIDTH, nearer: NEARER, now: this.moving, ahead: this.ahead, faded: FADED, lit: true });
     this.group.add(this.chain.object(this.material, 3));
     const kerf = Math.max(0, ...ctx.scene.tools.map(t => t.kerf));
     if (kerf > 0) this.addBands(kerf);
@@ -64,7 +69,8 @@ export class PathLines {
   }
   private addBands(kerf: number): void {
     const { shared } = this.ctx, colour = new Color();
-    const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: BAND_VERTEX, fragmentShader: BAND_FRAGMENT, transparent: true, depthWrite: true,
+    const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: BAND_VERTEX, fragmentShader: BAND_FRAGMENT, transparent: true, depthWrite: false,
+      stencilWrite: true, stencilRef: 1, stencilFunc: NotEqualStencilFunc, stencilZPass: ReplaceStencilOp,
       uniforms: { points: { value: this.chain.points }, tints: { value: this.chain.tints }, clip: shared.clip, clipOn: shared.clipOn, now: this.moving, kerf: { value: kerf }, ahead: this.ahead, colour: { value: colour } } });
     const mesh = this.chain.object(material, 2);
     this.bands = { mesh, kerf, colour };
@@ -96,14 +102,26 @@ export class PathLines {
     // Before anything happened all of it is seen.
     this.moving.value = time === 0 && !playing && show.ahead ? 1e9 : waysDone(this.ctx);
   }
-  /** The bands are worth their paint when one is seen. `pixel`: mm. */
-  zoomed(pixel: number): void { if (this.bands) this.bands.mesh.visible = this.bands.kerf > 1.2 * pixel; }
+  /** `pixel`: mm. Lines that lie close get thin and let the part through; the bands are painted when one is seen. */
+  zoomed(pixel: number): void {
+    if (this.bands) this.bands.mesh.visible = this.bands.kerf > 1.2 * pixel;
+    const { heat, show } = this.ctx.store.state, fits = COVER * this.spacing / pixel, part = show.part && this.ctx.scene.meshes.length > 0;
+    this.material.uniforms["width"]!.value = Math.min(WIDTH, Math.max(LEAST_WIDTH, fits));
+    this.material.uniforms["opacity"]!.value = (part ? Math.min(1, Math.max(LEAST_OPACITY, fits / LEAST_WIDTH)) : 1) * (heat && part ? OVER_HEAT : 1);
+  }
   highlight(): void {
     const { hovered, picked } = this.ctx.store.state, { point, count } = this.ctx.scene.path;
     const set = (mark: Mark, node: number | null): void => mark.set(node !== null && node > 0 && node < count ? point.subarray(3 * node - 3, 3 * node + 3) : null);
     set(this.hover, hovered === picked ? null : hovered);
     set(this.picked, picked);
   }
+}
+
+function cutLength(path: Path): number {
+  const p = path.point;
+  let l = 0;
+  for (let i = 1, k = 3; i < path.count; ++i, k += 3) if (path.kind[i] === Kind.feed) l += Math.hypot(p[k]! - p[k - 3]!, p[k + 1]! - p[k - 2]!, p[k + 2]! - p[k - 1]!);
+  return l;
 }
 
 /** How many ways are behind, with the share of the one being made. */

@@ -24,7 +24,7 @@ void fetch() {
 const vec4 NOWHERE = vec4(2.0, 2.0, 2.0, 1.0);`;
 
 const VERTEX = `${FETCH}
-uniform vec2 screen; uniform float pixel, width, now, ahead, rapids, nearer, smoothly;
+uniform vec2 screen; uniform float pixel, width, now, ahead, rapids, nearer, smoothly, lit;
 out vec3 vTint; out float vAt, vAlong, vLook; ${CLIP_VERTEX}
 void main() {
   fetch();
@@ -43,7 +43,12 @@ void main() {
   vec2 off = vec2(-d.y, d.x) * corner.y * w * 0.5 + d * (corner.x - 0.5) * w * 0.7;
   gl_Position = vec4(c.xy + off * 2.0 / screen * c.w, c.z - nearer * c.w, c.w);
   float t = corner.x < 0.5 ? fa : fb;
-  vTint = smoothly > 0.5 && corner.x < 0.5 ? tintStart.rgb : tint.rgb; vAt = float(way) + t; vAlong = corner.x * len / pixel; vPart = mix(start, end, t);
+  vTint = smoothly > 0.5 && corner.x < 0.5 ? tintStart.rgb : tint.rgb;
+  // Light on a thin thread: brightest across it, so that dense paths show the shape that they follow.
+  vec3 along = mat3(modelViewMatrix) * (end - start);
+  float across = dot(normalize(vec3(0.35, 0.55, 0.8)), along) / max(length(along), 1e-9);
+  vTint *= 1.0 - lit + lit * (0.62 + 0.48 * sqrt(max(0.0, 1.0 - across * across)));
+  vAt = float(way) + t; vAlong = corner.x * len / pixel; vPart = mix(start, end, t);
 }`;
 const FRAGMENT = `
 uniform float now, ahead, faded, opacity; ${CLIP_FRAGMENT}
@@ -96,12 +101,12 @@ function texture(data: Float32Array | Uint8Array, rows: number, type: typeof Flo
   return t;
 }
 
-export interface RibbonOptions { width: number; nearer: number; opacity?: number; onTop?: boolean; smooth?: boolean; now?: { value: number }; ahead?: { value: number }; faded?: number }
+export interface RibbonOptions { width: number; nearer: number; opacity?: number; onTop?: boolean; smooth?: boolean; lit?: boolean; now?: { value: number }; ahead?: { value: number }; faded?: number }
 
 /** Uniforms to set: rapids (0, 1). `now` counts ways: 2.5 is in the middle of the third. */
 export function ribbonMaterial(ctx: Context, chain: Chain, o: RibbonOptions): ShaderMaterial {
   const { shared } = ctx;
   return new Material({ glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: o.now !== undefined || o.opacity !== undefined, depthTest: !o.onTop, depthWrite: !o.onTop,
     uniforms: { points: { value: chain.points }, tints: { value: chain.tints }, clip: shared.clip, clipOn: shared.clipOn, screen: shared.screen, pixel: shared.pixel, width: { value: o.width },
-      now: o.now ?? { value: 1e9 }, ahead: o.ahead ?? { value: 1 }, rapids: { value: 1 }, nearer: { value: o.nearer }, smoothly: { value: o.smooth ? 1 : 0 }, faded: { value: o.faded ?? 1 }, opacity: { value: o.opacity ?? 1 } } });
+      now: o.now ?? { value: 1e9 }, ahead: o.ahead ?? { value: 1 }, rapids: { value: 1 }, nearer: { value: o.nearer }, smoothly: { value: o.smooth ? 1 : 0 }, lit: { value: o.lit ? 1 : 0 }, faded: { value: o.faded ?? 1 }, opacity: { value: o.opacity ?? 1 } } });
 }

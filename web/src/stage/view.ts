@@ -24,7 +24,7 @@ export class View {
   readonly right = new Vector3(); readonly up = new Vector3(); readonly back = new Vector3();
 
   /** `all` is what must not be cut off by the near and far planes; `shown` is what fit() shows. */
-  constructor(private all: Box3, private shown: Box3, readonly flat: boolean) {
+  constructor(private all: Box3, public shown: Box3, readonly flat: boolean) {
     const c = shown.getCenter(new Vector3());
     this.goal = { target: c.clone(), yaw: 0, pitch: 0, span: 1 };
     this.now = { target: c.clone(), yaw: 0, pitch: 0, span: 1 };
