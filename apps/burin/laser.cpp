@@ -8,8 +8,7 @@
 
 #include "burin/base/text.h"
 #include "burin/cl/apt.h"
-#include "burin/io/dxf/read_dxf.h"
-#include "burin/io/svg/read_svg.h"
+#include "burin/job/verify_laser.h"
 #include "burin/model/kerf.h"
 #include "burin/post/emit.h"
 #include "burin/view/picture.h"
@@ -76,14 +75,7 @@ Result<Kerf> kerf_of(const LaserArgs& args, Session& session) {
 Result<io::Drawing> read_drawing(const LaserArgs& args, Session& session) {
   auto bytes = session.read_input(args.drawing);
   if (!bytes) return bytes.error();
-  io::ReadOptions options;
-  options.file_name = args.drawing;
-  options.units = args.units;
-  const std::string extension = to_lower(fs::path(args.drawing).extension().string());
-  if (extension == ".dxf") return io::read_dxf(*bytes, options, session.diagnostics);
-  if (extension == ".svg") return io::read_svg(*bytes, options, session.diagnostics);
-  return Error{
-      ErrorCode::usage, "is of no known kind (a drawing named .dxf or .svg)", {.file = args.drawing}};
+  return job::read_drawing(*bytes, args.drawing, args.units, session.diagnostics);
 }
 
 Result<void> parse_copies(const std::string& text, laser::CopyOptions& copies) {
