@@ -162,8 +162,8 @@ class PlaneTest(Case):
         # So many skipped that nothing comes near.
         lines = raster(step=12.0)
         q = self.verify(job, "--path", self.write("few.cl", "\n".join(lines)), expect=3)
-        # Beside each path the ball of 5 mm covers 10 of 12 mm, none of the plate's borders is nearer.
-        self.assertAlmostEqual(q["unmachined_area_mm2"], 40 * 2 * 3 + 40 * (20 - 12 - 5), delta=12)
+        # Paths at -24, -12, 0, 12 and 24: the ball of 5 mm leaves 2 of 12 mm.
+        self.assertAlmostEqual(q["unmachined_area_mm2"], 40 * 2 * 4, delta=8)
 
     def test_a_wrong_radius(self):
         # A wall at x = 0 beside the path of a flat end.
@@ -259,39 +259,35 @@ class RotaryTest(Case):
 
         with open(self.path("bar.cl")) as f:
             lines = f.read().splitlines()
-        cuts = [i for i, line in enumerate(lines) if line.startswith("GOTO/") and 9.9 < self.far(line) < 10.05]
-        k = cuts[len(cuts) // 2]
-        v = [float(x) for x in lines[k][5:].split(",")]
-        r = math.hypot(v[1], v[2])
-        v[1], v[2] = v[1] * (r - 0.05) / r, v[2] * (r - 0.05) / r
+        axis, cuts = None, []
+        for i, line in enumerate(lines):
+            v = [float(x) for x in line[5:].split(",")] if line.startswith("GOTO/") else []
+            axis = v[3:] or axis
+            if v and 1 < v[0] < 5 and math.hypot(v[1] + 2 * axis[1], v[2] + 2 * axis[2]) < 12.02:
+                cuts.append((i, v[:3], axis))
+        k, v, axis = cuts[len(cuts) // 2]
+        center = np.array(v[1:]) + 2 * np.array(axis[1:])
+        r = np.linalg.norm(center)
+        v[1:] = np.array(v[1:]) - 0.05 * center / r
         deep = lines[:]
-        deep[k] = "GOTO/" + ",".join(f"{x:.9f}" for x in v)
+        deep[k] = "GOTO/" + ",".join(f"{x:.12f}" for x in v + axis)
         q = self.verify(self.job, "--path", self.write("deep.cl", "\n".join(deep)), "--max-gouge", "0.02", expect=1)
-        # The axis is radial: the tip is the deepest place of the ball.
-        self.near(q["gouge_max_mm"], 10 - (r - 0.05), q)
+        self.near(q["gouge_max_mm"], 12 - (r - 0.05), q)
         self.assertIn(q["gouge_line"], (k + 1, k + 2))
-
-    def far(self, line):
-        v = [float(x) for x in line[5:].split(",")]
-        return math.hypot(v[1], v[2]) if 0.5 < v[0] < 5.5 else 0
 
     def test_one_digit_of_the_joints(self):
         with open(self.path("bar.ngc")) as f:
             lines = f.read().splitlines()
-        at = [i for i, line in enumerate(lines) if re.search(r"\bA-?\d", line) and re.search(r"\bF", line)]
+        # A block of the middle that names Y and Z, and the next one too.
+        full = [bool(re.fullmatch(r"Y\S+ Z\S+ A\S+ F\S+", line)) for line in lines]
+        at = [i for i in range(len(lines) - 1) if full[i] and full[i + 1]]
         k = at[len(at) // 2]
-        state = {}
-        for line in lines[:k]:
-            for letter, number in re.findall(r"([XYZ])(-?[\d.]+)", line):
-                state[letter] = float(number)
-        self.assertAlmostEqual(state["Z"], 10, delta=0.02)
-        here = re.search(r"\bZ(-?[\d.]+)", lines[k])
-        z = float(here.group(1)) if here else state["Z"]
-        fault = z - 0.07
-        lines[k] = re.sub(r"\bZ-?[\d.]+", f"Z{fault:.4f}", lines[k]) if here else lines[k].replace(" A", f" Z{fault:.4f} A", 1)
+        y, z = (float(x) for x in re.match(r"Y(\S+) Z(\S+)", lines[k]).groups())
+        self.assertAlmostEqual(math.hypot(y, z + 2), 12, delta=0.011)
+        lines[k] = re.sub(r"\bZ-?[\d.]+", f"Z{z - 0.07:.4f}", lines[k])
         q = self.verify(self.job, "--path", self.write("digit.ngc", "\n".join(lines)), "--max-gouge", "0.02", expect=1)
-        # With the axis along Z the tip stands at hypot(Y, Z) whatever A is.
-        self.near(q["gouge_max_mm"], 10 - fault, q)
+        # The axis is along Z: the ball's centre stands 2 mm above the tip, whatever A is.
+        self.near(q["gouge_max_mm"], 12 - math.hypot(y, round(z - 0.07, 4) + 2), q)
         self.assertLessEqual(abs(q["gouge_line"] - (k + 1)), 1)
 
     def test_a_wrong_tool_and_a_wrong_machine(self):
@@ -360,8 +356,7 @@ class OrientTest(Case):
 class CycleTest(Case):
     def surface(self, slope=0.2):
         points = "".join(f"X{x}. Y{y}. Z{slope * x:.3f} W1.;\n" for y in (0, 5, 10, 15) for x in (0, 10, 20, 30))
-        return ("G21 G90 G00 Z30.;\nG106.2 I2 E1 P10 Q10 W30. D6. S0.02 F500.;\nN10 G06.23 U4 V4 D6. L0. F500. S0.02;\n" + points +
-                "P0. P0. P0. P0. P1. P1. P1. P1.;\nQ0. Q0. Q0. Q0. Q1. Q1. Q1. Q1.;\nM30;\n")
+        return "G21 G90 G00 Z30.;\nN10 G06.23 U4 V4 D6. L0. F500. S0.02;\n" + points + "M30;\n"
 
     def test_clean_and_faults(self):
         design = self.write("slope.nc", self.surface())
@@ -443,7 +438,7 @@ class BadInputTest(Case):
         self.refuse(job, "--path", self.write("damaged.cl", "\n".join(raster())[:300] + "\nGOTO/1,2,x\nFINI"), says="damaged.cl:")
         self.refuse(job, "--path", self.write("nan.cl", "GOTO/1,2,nan\nFINI\n"), says="nan.cl:1")
         self.refuse(job, "--path", self.write("empty.cl", ""), says="empty.cl")
-        self.refuse(job, "--path", self.write("text.cl", "Dear Sir,\nplease find enclosed\n"), says="neither")
+        self.refuse(job, "--path", self.write("text.txt", "Dear Sir,\nplease find enclosed\n"), says="no tool path")
         self.refuse(job, "--path", self.write("part.h", "0 BEGIN PGM 1 MM\n1 L X+0 Y+0 R0 FMAX M3\n2 END PGM 1 MM\n"), says="Heidenhain")
         self.refuse(job, "--path", self.write("still.cl", "FEDRAT/100\nFINI\n"), says="moves nothing")
         self.refuse(job, "--path", self.write("cycle.nc", "G90 G0 X0 Y0\nG81 X1 Y1 Z-1 R1 F100\nM30\n"), says="cycle.nc:2")
