@@ -159,10 +159,10 @@ class Task {
     if (!l.meets) l.kind = Kind::uncut;
   }
 
-  /// Whether an edge lies between p (on an edge itself) and p + s n.
+  /// Whether part lies between p (on an edge) and p + s n.
   bool blocked(Point2 p, Vec2 n, double s) const {
     const Segment way = geom::make_line(p + std::min(kBeside_mm, 0.5 * s) * n, p + s * n);
-    return scene_.edges.nearest(way, flat::kRounding).distance < kNever;
+    return scene_.in_part(way.a) || scene_.edges.nearest(way, flat::kRounding).distance < kNever;
   }
 
   void count(const Look& l) {
