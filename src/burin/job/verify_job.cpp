@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "burin/base/text.h"
+#include "burin/job/file_kind.h"
 #include "burin/job/machine_file.h"
 #include "burin/job/program_file.h"
 #include "burin/job/verify_design.h"
@@ -59,7 +60,7 @@ class Reader {
     in_.kerf_mm = *options_.kerf_mm;
     in_.tolerance_mm = options_.tolerance_mm.value_or(in_.tolerance_mm);
     in_.program = std::move(*program);
-    in_.program_is_nc = kind_of_program(*text) == ProgramKind::nc;
+    in_.program_is_nc = kind_of_file(*text, options_.path) == FileKind::nc;
     in_.program_text = std::move(*text);
     return std::move(in_);
   }
