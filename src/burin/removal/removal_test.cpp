@@ -61,5 +61,31 @@ TEST(Removal, SlotsOfAllEndsHaveTheirVolume) {
   }
 }
 
+
+void expect_closed(const geom::Mesh& mesh, double volume, double slack) {
+  const geom::MeshReport report = geom::examine(mesh);
+  EXPECT_TRUE(report.holes.empty());
+  EXPECT_EQ(report.shared_by_many, 0U);
+  EXPECT_EQ(report.against_sense, 0U);
+  EXPECT_NEAR(report.signed_volume, volume, slack * volume);
+}
+
+TEST(Removal, MeshOfABlockIsTheBlock) {
+  for (const Directions d : {Directions::one, Directions::three}) {
+    auto r = remove_material(kBlock, {}, at(0.7, d));
+    ASSERT_TRUE(r);
+    EXPECT_NEAR(r->stock_mm3(), 8000, 0.01);
+    EXPECT_EQ(r->removed_mm3(), 0);
+    if (d == Directions::three) expect_closed(r->mesh(), 8000, 1e-5);
+  }
+}
+
+TEST(Removal, MeshOfASlotHasItsVolume) {
+  for (const double c : {0.0, 1.0, 3.0}) {
+    auto r = remove_material(kBlock, path_of(mill(3, c), {{{-10, 10, 6}}, {{50, 10, 6}}}), at(0.3, Directions::three));
+    ASSERT_TRUE(r);
+    expect_closed(r->mesh(), r->stock_mm3() - r->removed_mm3(), 0.001);
+  }
+}
 }  // namespace
 }  // namespace burin::removal

@@ -32,11 +32,19 @@ Vec3 unit_along(std::size_t axis) {
   return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
 }
 
-Result<void> fill(DexelField& field, const BlockStock&, unsigned threads) {
-  const Vec3 e = unit_along(field.axis());
-  const Span whole{0, static_cast<float>(field.grid().length(field.axis())), pack(-e), pack(e)};
+Result<void> fill(DexelField& field, const BlockStock& block, unsigned threads) {
+  const Grid& grid = field.grid();
+  const Vec3 e = unit_along(field.axis()), lo = block.lo - grid.origin, hi = block.hi - grid.origin;
+  const Span whole{static_cast<float>(component(lo, field.axis())), static_cast<float>(component(hi, field.axis())),
+                   pack(-e), pack(e)};
+  const auto inside = [&](std::uint32_t i, std::size_t axis) {
+    const double at = (i + 0.5) * grid.step[axis];
+    return component(lo, axis) <= at && at < component(hi, axis);
+  };
   parallel_for(field.tile_count(), threads, [&](std::size_t t, std::size_t) {
-    for_lines(field, t, [&](std::uint32_t, std::uint32_t, std::uint32_t l) { field.tile(t).add(l, whole); });
+    for_lines(field, t, [&](std::uint32_t u, std::uint32_t v, std::uint32_t l) {
+      if (inside(u, field.u_axis()) && inside(v, field.v_axis())) field.tile(t).add(l, whole);
+    });
   });
   return {};
 }

@@ -172,9 +172,8 @@ void TileCutter::note(Open& open, std::uint32_t line, std::uint32_t u, std::uint
 
 void TileCutter::mark(std::uint32_t u, std::uint32_t v, float lo, float hi, std::uint32_t move) {
   const Grid& g = field_.grid();
-  const double step = g.step[axis_];
-  const auto from = static_cast<std::uint32_t>(std::max(0.0, std::ceil(static_cast<double>(lo) / step - 0.5)));
-  for (std::uint32_t k = from; k < g.count[2] && (k + 0.5) * step < static_cast<double>(hi); ++k)
+  const auto [from, to] = g.nodes_in(axis_, lo, hi);
+  for (std::uint32_t k = from; k < to; ++k)
     times_.cut_at[(static_cast<std::size_t>(k) * g.count[1] + v) * g.count[0] + u] = move + 1;
 }
 
