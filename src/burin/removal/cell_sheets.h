@@ -7,8 +7,8 @@
 
 namespace burin::removal {
 
-/// Corners of a cell: bit dx + 2 dy + 4 dz, set for material. Edge (axis, p, q): 4 axis + p + 2 q, where p and
-/// q are the places on the next axes in the order x, y, z, x. Face (axis, s): 2 axis + s.
+/// Corners of a cell: bit dx + 2 dy + 4 dz, set for material. Edge (axis, p, q): 4 axis + p + 2 q, where p
+/// and q are the places on the next axes in the order x, y, z, x. Face (axis, s): 2 axis + s.
 struct CellSheets {
   static constexpr std::uint8_t kNone = 0xff;
   std::array<std::uint8_t, 12> of_edge{};  ///< kNone: the surface does not cross it

@@ -57,7 +57,8 @@ std::uint8_t share(const Crossings& crossings, std::array<std::uint32_t, 3> node
 /// Nodes of the material that is there before the first cut: kNever, all others kEmpty.
 std::vector<std::uint32_t> nodes_of(const DexelField& along_z) {
   const Grid& g = along_z.grid();
-  std::vector<std::uint32_t> nodes(static_cast<std::size_t>(g.count[0]) * g.count[1] * g.count[2], StockClock::kEmpty);
+  std::vector<std::uint32_t> nodes(static_cast<std::size_t>(g.count[0]) * g.count[1] * g.count[2],
+                                   StockClock::kEmpty);
   for (std::uint32_t j = 0; j < g.count[1]; ++j)
     for (std::uint32_t i = 0; i < g.count[0]; ++i)
       for (const Span* s = along_z.begin(i, j); s != along_z.end(i, j); ++s) {
@@ -89,7 +90,8 @@ StockClock with_border(const Grid& grid, const std::vector<std::uint32_t>& inner
 }
 
 void cross_edges(StockClock& clock, const Crossings& at_start, const Crossings& at_end) {
-  const std::array<std::size_t, 3> stride{1, clock.count[0], static_cast<std::size_t>(clock.count[0]) * clock.count[1]};
+  const std::array<std::size_t, 3> stride{1, clock.count[0],
+                                          static_cast<std::size_t>(clock.count[0]) * clock.count[1]};
   std::size_t n = 0;
   for (std::uint32_t k = 0; k < clock.count[2]; ++k)
     for (std::uint32_t j = 0; j < clock.count[1]; ++j)

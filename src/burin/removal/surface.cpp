@@ -36,7 +36,11 @@ class Layer {
 class Surface {
  public:
   Surface(const Grid& grid, const std::vector<DexelField>& fields)
-      : grid_(grid), crossings_(grid, fields), nx_(grid.count[0] + 2), ny_(grid.count[1] + 2), nz_(grid.count[2] + 2) {}
+      : grid_(grid),
+        crossings_(grid, fields),
+        nx_(grid.count[0] + 2),
+        ny_(grid.count[1] + 2),
+        nz_(grid.count[2] + 2) {}
 
   geom::Mesh make() {
     for (int k = -1; k < 3; ++k) layers_.push_back(layer(k));
@@ -65,7 +69,8 @@ class Surface {
   Layer layer(int k) const {
     Layer out(nx_, ny_);
     if (k < 1 || k > static_cast<int>(grid_.count[2])) return out;
-    crossings_.for_nodes(static_cast<std::uint32_t>(k), [&](std::uint32_t i, std::uint32_t j) { out.set(i, j); });
+    crossings_.for_nodes(static_cast<std::uint32_t>(k),
+                         [&](std::uint32_t i, std::uint32_t j) { out.set(i, j); });
     return out;
   }
   /// Layer k + up of nodes, while the cells of layer k are at work.
@@ -85,8 +90,9 @@ class Surface {
       // Such faces have material in them: there is a cell on their other side.
       const unsigned axis = face / 2;
       const int step = (face & 1) != 0 ? 1 : -1;
-      const unsigned there = corners(i + (axis == 0 ? static_cast<std::uint32_t>(step) : 0),
-                                     j + (axis == 1 ? static_cast<std::uint32_t>(step) : 0), axis == 2 ? step : 0);
+      const unsigned there =
+          corners(i + (axis == 0 ? static_cast<std::uint32_t>(step) : 0),
+                  j + (axis == 1 ? static_cast<std::uint32_t>(step) : 0), axis == 2 ? step : 0);
       if (meets_itself(there, face ^ 1)) out |= 1U << face;
     }
     return out;
@@ -97,13 +103,20 @@ class Surface {
     now_.cells.clear();
     const std::size_t words = nodes(0).words();
     for (std::uint32_t j = 0; j + 1 < ny_; ++j) {
-      const std::array<const std::uint64_t*, 4> rows{nodes(0).row(j), nodes(0).row(j + 1), nodes(1).row(j), nodes(1).row(j + 1)};
-      const auto any = [&](std::size_t w) { return w < words ? rows[0][w] | rows[1][w] | rows[2][w] | rows[3][w] : 0; };
-      const auto all = [&](std::size_t w) { return w < words ? rows[0][w] & rows[1][w] & rows[2][w] & rows[3][w] : 0; };
+      const std::array<const std::uint64_t*, 4> rows{nodes(0).row(j), nodes(0).row(j + 1), nodes(1).row(j),
+                                                     nodes(1).row(j + 1)};
+      const auto any = [&](std::size_t w) {
+        return w < words ? rows[0][w] | rows[1][w] | rows[2][w] | rows[3][w] : 0;
+      };
+      const auto all = [&](std::size_t w) {
+        return w < words ? rows[0][w] & rows[1][w] & rows[2][w] & rows[3][w] : 0;
+      };
       for (std::size_t w = 0; w < words; ++w) {
-        std::uint64_t mixed = (any(w) | any(w) >> 1 | any(w + 1) << 63) & ~(all(w) & (all(w) >> 1 | all(w + 1) << 63));
+        std::uint64_t mixed =
+            (any(w) | any(w) >> 1 | any(w + 1) << 63) & ~(all(w) & (all(w) >> 1 | all(w + 1) << 63));
         for (; mixed != 0; mixed &= mixed - 1) {
-          const auto i = static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(__builtin_ctzll(mixed));
+          const auto i =
+              static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(__builtin_ctzll(mixed));
           if (i + 1 < nx_) cell(i, j, k);
         }
       }
@@ -117,8 +130,8 @@ class Surface {
     for (unsigned e = 0; e < 12; ++e) {
       if (c.sheets.of_edge[e] == CellSheets::kNone) continue;
       const unsigned lower = corner_of_edge(e), axis = e / 4;
-      vertices[c.sheets.of_edge[e]].add(
-          crossings_.at({i + (lower & 1), j + (lower >> 1 & 1), k + (lower >> 2)}, axis, (here >> lower & 1) != 0));
+      vertices[c.sheets.of_edge[e]].add(crossings_.at(
+          {i + (lower & 1), j + (lower >> 1 & 1), k + (lower >> 2)}, axis, (here >> lower & 1) != 0));
     }
     const Point3 lo{crossings_.node(0, i), crossings_.node(1, j), crossings_.node(2, k)};
     const geom::Box3 box{lo, lo + geom::Vec3{grid_.step[0], grid_.step[1], grid_.step[2]}};
@@ -137,7 +150,8 @@ class Surface {
                                                    bits ^ above.row(j)[w]};
         for (unsigned axis = 0; axis < 3; ++axis)
           for (std::uint64_t m = changed[axis]; m != 0; m &= m - 1) {
-            const auto i = static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(__builtin_ctzll(m));
+            const auto i =
+                static_cast<std::uint32_t>(64 * w) + static_cast<std::uint32_t>(__builtin_ctzll(m));
             if (i < nx_) quad(i, j, k, axis, here.at(i, j));
           }
       }
@@ -157,7 +171,9 @@ class Surface {
       v[n] = c.first + c.sheets.of_edge[4 * axis + kAround[n][0] + 2 * kAround[n][1]];
     }
     if (!leaves) std::swap(v[1], v[3]);
-    const auto far = [&](unsigned a, unsigned b) { return distance(mesh_.vertices[v[a]], mesh_.vertices[v[b]]); };
+    const auto far = [&](unsigned a, unsigned b) {
+      return distance(mesh_.vertices[v[a]], mesh_.vertices[v[b]]);
+    };
     if (far(0, 2) <= far(1, 3)) {
       mesh_.triangles.push_back({v[0], v[1], v[2]});
       mesh_.triangles.push_back({v[0], v[2], v[3]});
