@@ -43,7 +43,7 @@ function readouts(scene: Scene, store: Store): { time: HTMLElement; more: HTMLEl
   const m = motionOf(scene), { path } = scene, clock = el("b", {}), way = el("span", { class: "soft" });
   const time = el("div", { class: "clock nums" }, el("span", {}, clock, el("span", { class: "soft" }, ` / ${duration(m.duration)}`)), way);
   const more = el("dl", { class: "readouts nums" }), cells = new Map<string, HTMLElement>();
-  const cell = (name: string, wide = "") => { const d = el("dd", {}); more.append(el("div", { class: wide }, el("dt", {}, name), d)); cells.set(name, d); };
+  const cell = (name: string, wide = `r-${name}`) => { const d = el("dd", {}); more.append(el("div", { class: wide }, el("dt", {}, name), d)); cells.set(name, d); };
   for (const n of ["X", "Y", "Z"]) cell(n);
   const letters = path.rotary ? (scene.machine?.axes.slice(0, 2).map(a => a.letter) ?? ["A", "C"]) : [];
   for (const l of letters) cell(l);
