@@ -7,18 +7,11 @@
 #include <tuple>
 
 #include "burin/base/parallel.h"
-#include "burin/verify/mill_motion.h"
-#include "burin/verify/mill_search.h"
+#include "burin/verify/mill_walk.h"
 
 namespace burin::verify {
 namespace {
 
-using geom::Point3;
-using geom::Vec3;
-
-// Pieces that are looked at together. A move is never divided between two of these, so that what is found
-// does not depend on the number of threads.
-constexpr std::size_t kBlock = 512;
 // Blocks between two reports of progress, and between two times that the list is brought down to what is
 // kept.
 constexpr std::size_t kWave = 256;
@@ -30,22 +23,6 @@ constexpr double kFirstLook = 0.1;
 constexpr std::uint64_t kBudget = 50'000, kBudgetOfAll = 20'000'000, kLeastBudget = 1000;
 // Collisions that one task measures.
 constexpr std::size_t kMeasured = 16;
-
-/// One straight piece of a tool's way.
-struct Step {
-  Stretch stretch;
-  std::uint32_t move = 0;
-  std::size_t piece = 0;
-};
-Step step_of(const ToolPath& path, std::size_t i) {
-  const cl::Pose& from = i == 0 ? path.from : path.pieces[i - 1].to;
-  return {Stretch::between(from, path.pieces[i].to), path.pieces[i].move, i};
-}
-
-/// Pieces of one tool that are looked at together.
-struct Block {
-  std::size_t tool = 0, begin = 0, end = 0;
-};
 
 struct Counterpart {
   const TriangleTree* tree = nullptr;
@@ -72,7 +49,6 @@ class Walk {
   Walk(const Counterpart& counterpart, const ToolPiece& piece, std::size_t tool,
        const CollisionOptions& options, Found& out)
       : search_(*counterpart.tree, piece.body, options.resolution_mm, kBudget),
-        span_(piece.body.span()),
         floor_(options.tolerance_mm),
         hit_{{0, body_of(piece.part), counterpart.against, 0, {}}, tool, 0, 0},
         out_(out) {}
@@ -80,25 +56,11 @@ class Walk {
   void run(const std::vector<Step>& steps) {
     if (steps.empty()) return;
     begin(steps.front());
-    range(steps.data(), steps.data() + steps.size(), search_.root(), 0);
+    walk_.run(steps, search_, [this](const Step& s, const MillSearch::Front& front) { step(s, front); });
     finish();
   }
 
  private:
-  /// Halves the steps until none of the tree is near enough to matter, or one step is left.
-  void range(const Step* begin, const Step* end, const MillSearch::Front& front, std::size_t level) {
-    if (front.empty()) return;
-    if (end - begin == 1) return step(*begin, front);
-    if (fronts_.size() <= level) fronts_.resize(level + 1);
-    const auto [mean, slack] = around(begin, end);
-    MillSearch::Front narrowed = std::move(fronts_[level]);
-    search_.narrow(mean, slack, front, narrowed);
-    const Step* middle = begin + (end - begin) / 2;
-    range(begin, middle, narrowed, level + 1);
-    range(middle, end, narrowed, level + 1);
-    fronts_[level] = std::move(narrowed);
-  }
-
   void step(const Step& s, const MillSearch::Front& front) {
     if (s.move != hit_.collision.move) {
       finish();
@@ -126,36 +88,12 @@ class Walk {
     out_.hits.push_back(hit_);
   }
 
-  struct Around {
-    Placed mean;
-    double slack = 0;  ///< no place of the piece of the tool is farther from where it is in `mean`
-  };
-  Around around(const Step* begin, const Step* end) const {
-    geom::Box3 tips;
-    Vec3 sum;
-    const auto each_end = [&](auto&& use) {
-      for (const Step* s = begin; s != end; ++s) use(s->stretch.from), use(s->stretch.at(1));
-    };
-    each_end([&](const Placed& p) { tips.add(p.tip), sum = sum + p.axis; });
-    Around out;
-    out.mean = {lerp(tips.lo, tips.hi, 0.5), norm(sum) > 0 ? unit(sum) : begin->stretch.from.axis};
-    double way = 0, chord = 0;
-    each_end([&](const Placed& p) {
-      way = std::max(way, distance(p.tip, out.mean.tip));
-      chord = std::max(chord, norm(p.axis - out.mean.axis));
-    });
-    // Great circles stay within a cap that holds their ends if it is less than half of the sphere.
-    constexpr double kCap = 1.4;
-    out.slack = way + (chord < kCap ? chord : 2) * span_;
-    return out;
-  }
-
   MillSearch search_;
-  double span_, floor_;
+  double floor_;
   Hit hit_;  ///< of the move so far
   Found& out_;
   MillFinding seed_;  ///< of the step before
-  std::vector<MillSearch::Front> fronts_;
+  MillWalk walk_;
 };
 
 auto place(const Hit& h) {
@@ -229,38 +167,11 @@ double measure(Hit& hit, const ToolPath& path, const std::vector<Counterpart>& c
   return resolution;
 }
 
-std::vector<Block> blocks_of(const CheckedPath& path) {
-  std::vector<Block> blocks;
-  for (std::size_t t = 0; t < path.tools.size(); ++t) {
-    const std::vector<PathPiece>& pieces = path.tools[t].pieces;
-    for (std::size_t begin = 0; begin < pieces.size();) {
-      std::size_t end = std::min(begin + kBlock, pieces.size());
-      while (end < pieces.size() && pieces[end].move == pieces[end - 1].move) ++end;
-      blocks.push_back({t, begin, end});
-      begin = end;
-    }
-  }
-  return blocks;
-}
-
-Result<void> validate(const CheckedPath& path, const CollisionOptions& options) {
+Result<void> validate(const CollisionOptions& options) {
   if (!(std::isfinite(options.tolerance_mm) && options.tolerance_mm >= 0))
-    return Error{ErrorCode::range, "the tolerance of collisions must not be negative", {}};
+    return Error{ErrorCode::range, "the tolerance of collisions is no depth (0 mm or more)", {}};
   if (!(std::isfinite(options.resolution_mm) && options.resolution_mm > 0))
     return Error{ErrorCode::range, "the resolution of collisions must be positive", {}};
-  if (!(std::isfinite(path.motion_mm) && path.motion_mm >= 0))
-    return Error{ErrorCode::range, "the motion tolerance of the path must not be negative", {}};
-  for (const ToolPath& tool : path.tools) {
-    if (auto ok = validate(tool.tool); !ok) return ok.error();
-    const cl::Pose* from = &tool.from;
-    if (auto ok = validate_pose(*from, tool.pieces.empty() ? 0 : tool.pieces.front().move); !ok)
-      return ok.error();
-    for (const PathPiece& piece : tool.pieces) {
-      if (auto ok = validate_pose(piece.to, piece.move); !ok) return ok.error();
-      if (auto ok = validate_turn(*from, piece.to, piece.move); !ok) return ok.error();
-      from = &piece.to;
-    }
-  }
   return {};
 }
 
@@ -276,7 +187,8 @@ std::string_view name(Against against) {
 Result<CollisionReport> find_collisions(const geom::Mesh& part, const geom::Mesh& obstacles,
                                         const CheckedPath& path, const CollisionOptions& options,
                                         ProgressSink* progress) {
-  if (auto ok = validate(path, options); !ok) return ok.error();
+  if (auto ok = validate(options); !ok) return ok.error();
+  if (auto ok = validate(path); !ok) return ok.error();
   for (const geom::Mesh* mesh : {&part, &obstacles})
     if (auto ok = validate_triangles(*mesh); !ok) return ok.error();
   const TriangleTree part_tree(part), obstacle_tree(obstacles);

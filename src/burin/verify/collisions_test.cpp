@@ -9,6 +9,8 @@
 #include <random>
 #include <string>
 
+#include "burin/verify/mill_cases.h"
+
 namespace burin::verify {
 namespace {
 
@@ -18,27 +20,8 @@ using geom::Vec3;
 
 const Vec3 kUp{0, 0, 1};
 
-Mesh box(Point3 lo, Point3 hi) {
-  Mesh m;
-  for (int i = 0; i < 8; ++i)
-    m.vertices.push_back({i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z});
-  m.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return m;
-}
-
-/// Each pose after the first is a move of its own; `rapid` says which are rapids.
-CheckedPath path_of(const CheckedMill& tool, const std::vector<cl::Pose>& poses,
-                    const std::vector<bool>& rapid = {}) {
-  CheckedPath path;
-  path.tools.push_back({tool, 1, poses.front(), {}});
-  path.moves.resize(poses.size());
-  for (std::size_t i = 1; i < poses.size(); ++i) {
-    path.moves[i].rapid = i < rapid.size() && rapid[i];
-    path.tools[0].pieces.push_back({poses[i], static_cast<std::uint32_t>(i), path.moves[i].rapid});
-  }
-  return path;
-}
+using cases::box;
+using cases::path_of;
 
 CollisionReport found(const Mesh& part, const Mesh& obstacles, const CheckedPath& path,
                       const CollisionOptions& options = {}) {
@@ -314,17 +297,9 @@ TEST(Collisions, CleanWhenJustClear) {
 
 // Every move deep in a part: time and list stay bounded, and what is listed is the deepest.
 TEST(Collisions, ManyDeepOnes) {
-  Mesh part;
-  constexpr std::uint32_t kN = 100;
-  for (std::uint32_t j = 0; j <= kN; ++j)
-    for (std::uint32_t i = 0; i <= kN; ++i)
-      part.vertices.push_back({2.0 * i - 100, 2.0 * j - 100, 3 * std::sin(0.2 * i) * std::cos(0.15 * j)});
-  for (std::uint32_t j = 0; j < kN; ++j)
-    for (std::uint32_t i = 0; i < kN; ++i) {
-      const std::uint32_t a = j * (kN + 1) + i, b = a + kN + 1;
-      part.triangles.push_back({a, a + 1, b + 1});
-      part.triangles.push_back({a, b + 1, b});
-    }
+  const Mesh part = cases::grid(100, 100, [](double u, double v) {
+    return Point3{200 * u - 100, 200 * v - 100, 3 * std::sin(20 * u) * std::cos(15 * v)};
+  });
   std::vector<cl::Pose> poses;
   for (int i = 0; i <= 1000; ++i)
     poses.push_back({{80 * std::cos(0.01 * i), 80 * std::sin(0.013 * i), -100 + 0.01 * i},

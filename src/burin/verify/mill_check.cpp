@@ -5,23 +5,30 @@
 #include <cmath>
 
 #include "burin/base/parallel.h"
-#include "burin/verify/mill_motion.h"
-#include "burin/verify/mill_search.h"
+#include "burin/verify/mill_walk.h"
 
 namespace burin::verify {
 namespace {
 
-// Moves that are looked at after each other, each starting from the deepest gouge found among them: what is
-// found does not depend on the number of threads.
-constexpr std::size_t kChunk = 32;
-
-struct Deepest {
-  std::vector<MillFinding> of_piece;
-  std::uint64_t evaluations = 0;
-};
-
 MillFinding& finding(MillCheckReport& report, ToolPart part) {
   return part == ToolPart::cutter ? report.cutter : part == ToolPart::shank ? report.shank : report.holder;
+}
+
+/// Each piece of the tool begins with the deepest place that was found in the block.
+MillCheckReport look(const TriangleTree& tree, const ToolPath& path, const Block& block, double resolution) {
+  std::vector<Step> steps;
+  for (std::size_t i = block.begin; i < block.end; ++i) steps.push_back(step_of(path, i));
+  MillCheckReport report;
+  for (const ToolPiece& piece : pieces_of(path.tool)) {
+    MillSearch search(tree, piece.body, resolution);
+    MillWalk().run(steps, search, [&](const Step& step, const MillSearch::Front& front) {
+      search.stretch(step.stretch, step.move, front);
+    });
+    MillFinding& worst = finding(report, piece.part);
+    if (search.deepest().mm > worst.mm) worst = search.deepest();
+    report.evaluations += search.evaluations();
+  }
+  return report;
 }
 
 }  // namespace
@@ -30,44 +37,26 @@ double MillCheckReport::gouge_max_mm() const {
   return std::max({cutter.mm, shank.mm, holder.mm});
 }
 
-Result<MillCheckReport> check_mill(const geom::Mesh& mesh, const CheckedMill& tool, const MillMotion& motion,
+Result<MillCheckReport> check_mill(const geom::Mesh& mesh, const CheckedPath& path,
                                    const MillCheckOptions& options) {
-  if (auto ok = validate(tool); !ok) return ok.error();
-  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  if (!positive(options.resolution_mm) || !positive(options.motion_mm))
-    return Error{ErrorCode::range, "resolution and motion tolerance must be positive", {}};
+  if (!(std::isfinite(options.resolution_mm) && options.resolution_mm > 0))
+    return Error{ErrorCode::range, "the resolution must be positive", {}};
+  if (auto ok = validate(path); !ok) return ok.error();
   if (auto ok = validate_triangles(mesh); !ok) return ok.error();
-  const std::vector<ToolPiece> pieces = pieces_of(tool);
-  double span = 0;
-  for (const ToolPiece& p : pieces) span = std::max(span, p.body.span());
-  const StretchedMotion moves(mesh, motion, span, options.motion_mm);
-  if (auto ok = moves.validate(); !ok) return ok.error();
-
   MillCheckReport report;
-  report.bound_mm = options.resolution_mm + (moves.exact() ? 0 : options.motion_mm);
+  report.bound_mm = options.resolution_mm + path.motion_mm;
   const TriangleTree tree(mesh);
-  if (tree.nodes().empty() || moves.count() < 2) return report;
+  if (tree.nodes().empty()) return report;
 
-  std::vector<Deepest> chunks((moves.count() - 1 + kChunk - 1) / kChunk);
-  parallel_for(chunks.size(), thread_count(options.threads), [&](std::size_t chunk, std::size_t) {
-    std::vector<MillSearch> searches;
-    for (const ToolPiece& p : pieces) searches.emplace_back(tree, p.body, options.resolution_mm);
-    const std::size_t end = std::min(moves.count(), 1 + (chunk + 1) * kChunk);
-    for (std::size_t m = 1 + chunk * kChunk; m < end; ++m)
-      moves.for_each_stretch(m, [&](const Stretch& stretch) {
-        for (MillSearch& s : searches) s.stretch(stretch, m, s.root());
-      });
-    for (const MillSearch& s : searches) {
-      chunks[chunk].of_piece.push_back(s.deepest());
-      chunks[chunk].evaluations += s.evaluations();
-    }
+  const std::vector<Block> blocks = blocks_of(path);
+  std::vector<MillCheckReport> found(blocks.size());
+  parallel_for(blocks.size(), thread_count(options.threads), [&](std::size_t i, std::size_t) {
+    found[i] = look(tree, path.tools[blocks[i].tool], blocks[i], options.resolution_mm);
   });
-  for (const Deepest& chunk : chunks) {
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      MillFinding& worst = finding(report, pieces[i].part);
-      if (chunk.of_piece[i].mm > worst.mm) worst = chunk.of_piece[i];
-    }
-    report.evaluations += chunk.evaluations;
+  for (const MillCheckReport& block : found) {
+    for (const auto worst : {&MillCheckReport::cutter, &MillCheckReport::shank, &MillCheckReport::holder})
+      if ((block.*worst).mm > (report.*worst).mm) report.*worst = block.*worst;
+    report.evaluations += block.evaluations;
   }
   return report;
 }

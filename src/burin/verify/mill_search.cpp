@@ -43,6 +43,12 @@ std::vector<ToolPiece> pieces_of(const CheckedMill& tool) {
   return out;
 }
 
+double span(const CheckedMill& tool) {
+  double span = 0;
+  for (const ToolPiece& p : pieces_of(tool)) span = std::max(span, p.body.span());
+  return span;
+}
+
 Result<void> validate(const CheckedMill& tool) {
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   if (!positive(tool.radius) || !positive(tool.length))

@@ -22,6 +22,8 @@ struct ToolPiece {
   ToolPart part = ToolPart::cutter;
 };
 std::vector<ToolPiece> pieces_of(const CheckedMill& tool);
+/// No place of it is farther from the tip.
+double span(const CheckedMill& tool);
 
 /// Numbers that are finite and positive, a corner that fits (range).
 Result<void> validate(const CheckedMill& tool);
@@ -55,6 +57,7 @@ class MillSearch {
   /// All of the tree.
   Front root() const;
 
+  double span() const { return body_.span(); }
   bool hit() const { return found_.mm > floor_; }
   const MillFinding& deepest() const { return found_; }
   double resolution() const { return resolution_; }

@@ -10,7 +10,7 @@
 #include "burin/base/text.h"
 #include "burin/geom/point_tools.h"
 #include "burin/verify/joint_pieces.h"
-#include "burin/verify/mill_motion.h"
+#include "burin/verify/mill_search.h"
 
 namespace burin::verify {
 namespace {
@@ -18,19 +18,8 @@ namespace {
 using geom::Point3;
 using geom::Vec3;
 
-// An axis may be so far from a unit vector: files keep six or seven decimals.
-constexpr double kUnit = 1e-6;
-// Axes nearer to opposite than this have no great circle that rounding does not choose.
-constexpr double kOpposite = 1e-9;
 // Ends of arcs may lie so far off their circle (controls refuse between 0.01 and 0.02).
 constexpr double kArcEnds_mm = 0.05;
-
-/// No place of the tool is farther from the tip.
-double span_of(const CheckedMill& tool) {
-  double span = std::hypot(tool.radius, tool.length);
-  for (const ToolCylinder& c : tool.cylinders) span = std::max(span, std::hypot(c.radius, c.to));
-  return span;
-}
 
 class Builder {
  public:
@@ -94,9 +83,8 @@ class Builder {
     if (tool_ready_) return {};
     auto tool = source_(loaded_);
     if (!tool) return tool.error();
-    span_ = span_of(*tool);
-    if (!std::isfinite(span_) || !(tool->radius > 0))
-      return Error{ErrorCode::range, "a tool without a radius (above 0 mm)", {}};
+    if (auto ok = validate(*tool); !ok) return ok.error();
+    span_ = span(*tool);
     path_.tools.push_back({std::move(*tool), loaded_.number, from, {}});
     tool_ready_ = true;
     return {};
@@ -105,8 +93,7 @@ class Builder {
   Result<void> check(const cl::Pose& pose) const {
     if (!is_finite(pose.tip) || !is_finite(pose.axis))
       return wrong(ErrorCode::geometry, "a pose that is not finite");
-    if (std::abs(norm(pose.axis) - 1) > kUnit)
-      return wrong(ErrorCode::geometry, "the tool axis is no unit vector");
+    if (!is_axis(pose.axis)) return wrong(ErrorCode::geometry, "the tool axis is no unit vector");
     return {};
   }
 
@@ -141,16 +128,13 @@ class Builder {
     return {};
   }
 
-  bool opposite(const cl::Pose& to) const {
-    return dot(at_->axis, to.axis) < 0 && norm(cross(at_->axis, to.axis)) < kOpposite;
-  }
   Error half_turn() const {
     return wrong(ErrorCode::geometry,
                  "the axis turns by half a turn, which no great circle decides (put a pose between)");
   }
 
   Result<void> straight(const cl::Pose& to) {
-    if (opposite(to)) {
+    if (opposite(at_->axis, to.axis)) {
       if (!rapid_) return half_turn();
       // The way of a rapid is the machine's: over an axis across both, one as good as another.
       const Vec3 a = at_->axis;
@@ -163,9 +147,9 @@ class Builder {
   /// Chords: the tip leaves a chord over the angle h by at most r h^2 / 8, the axis turns as evenly as it
   /// does on the arc. Ends that do not lie on the circle make a spiral of it.
   Result<void> arc(const cl::Arc& arc) {
-    if (!is_finite(arc.center) || !is_finite(arc.normal) || std::abs(norm(arc.normal) - 1) > kUnit)
+    if (!is_finite(arc.center) || !is_axis(arc.normal))
       return wrong(ErrorCode::geometry, "an arc without centre or direction");
-    if (opposite(arc.to)) return half_turn();
+    if (opposite(at_->axis, arc.to.axis)) return half_turn();
     const Vec3 n = unit(arc.normal), start = at_->tip - arc.center, end = arc.to.tip - arc.center;
     const double rise0 = dot(start, n), rise1 = dot(end, n);
     const Vec3 out = start - rise0 * n;
