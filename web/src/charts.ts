@@ -81,7 +81,7 @@ export class Chart {
     hi += pad;
     const sy = (v: number) => bottom - (v - lo) / (hi - lo) * (bottom - top);
     g.lineWidth = 1; g.strokeStyle = themed("grid"); g.textAlign = "right";
-    const each = (hi - lo) / ((bottom - top) / 30);
+    const each = (hi - lo) / ((bottom - top) / 24);
     for (const v of ticks(lo, hi, 1, this.o.degrees ? stepOf(each, ANGLE_STEPS) : niceStep(each))) {
       const y = Math.round(sy(v)) + 0.5;
       g.beginPath(); g.moveTo(MARGIN.left, y); g.lineTo(right, y); g.stroke(); g.fillText(brief(v), MARGIN.left - 6, y);

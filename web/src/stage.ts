@@ -142,6 +142,7 @@ export class Stage {
       changed: () => this.invalidate(),
     });
     new ResizeObserver(() => { this.resize(); this.invalidate(); }).observe(this.box);
+    this.box.addEventListener("draw-now", () => this.draw()); // the canvas is read at once: a picture to save
     matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { this.resize(); this.invalidate(); });
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     this.invalidate();

@@ -45,14 +45,14 @@ function readouts(scene: Scene, store: Store): { time: HTMLElement; more: HTMLEl
   const more = el("dl", { class: "readouts nums" }), cells = new Map<string, HTMLElement>();
   const cell = (name: string, wide = "") => { const d = el("dd", {}); more.append(el("div", { class: wide }, el("dt", {}, name), d)); cells.set(name, d); };
   for (const n of ["X", "Y", "Z"]) cell(n);
-  if (path.axis) cell("axis", "w3");
   const letters = path.rotary ? (scene.machine?.axes.slice(0, 2).map(a => a.letter) ?? ["A", "C"]) : [];
   for (const l of letters) cell(l);
   cell("F");
+  if (scene.program.lines > 0) cell("line");
+  cell("move");
   if (scene.tools.length > 0) cell("tool", "w2");
   if (scene.groups.length > 0) cell("in", "w2");
-  cell("move");
-  if (scene.program.lines > 0) cell("line");
+  if (path.axis) cell("axis", "w3");
   const say = (name: string, text: string) => { const c = cells.get(name); if (c && c.textContent !== text) c.textContent = text; };
   const show = () => {
     if (path.count === 0) return;
@@ -160,7 +160,8 @@ export function makeTimeline(scene: Scene, store: Store): HTMLElement {
   const buttons = el("div", { class: "transport", role: "group", "aria-label": "Player" },
     button("passBack", "Pass before", go("pass", -1), { key: "[" }), button("moveBack", "Move before", go("move", -1), { key: "Shift+Left" }), button("back", "Node before", go("node", -1), { key: "Left" }), playing,
     button("on", "Next node", go("node", 1), { key: "Right" }), button("moveOn", "Next move", go("move", 1), { key: "Shift+Right" }), button("passOn", "Next pass", go("pass", 1), { key: "]" }), speedMenu(scene, store));
-  const { time, more } = readouts(scene, store);
+  const { time, more } = readouts(scene, store), long = motionOf(scene).duration;
+  if (long > 4 * FIT_SECONDS && store.state.speed === 1) store.set({ speed: long / FIT_SECONDS });
   const box = el("footer", { class: "timeline", "aria-label": "Timeline" }, buttons, time, more, strip(scene, store));
   if (scene.path.count < 2) box.hidden = true;
   return box;

@@ -40,7 +40,7 @@ export const chartsPanel: Panel = {
       const xs = x(), i = lastAtMost(xs, v), j = Math.min(path.count - 1, i + 1), f = xs[j] > xs[i] ? Math.min(1, (v - xs[i]) / (xs[j] - xs[i])) : 0;
       goTime(scene, store, path.time[i] + f * (path.time[j] - path.time[i]));
     };
-    const charts = new Map<string, Chart>(), area = el("div", { style: "overflow:auto;flex:1" }), picks = el("div", { class: "filters" });
+    const charts = new Map<string, Chart>(), area = el("div", { class: "charts" }), picks = el("div", { class: "filters" });
     const fill = () => {
       area.replaceChildren();
       for (const s of all) {

@@ -40,7 +40,7 @@ function drawing(h: Histogram, store: Store, heat: ReturnType<typeof heated>): H
     if (h.tolerance > 0) for (const t of [-h.tolerance, h.tolerance]) if (t > lo && t < hi) { g.beginPath(); g.moveTo(x(t), TOP); g.lineTo(x(t), bottom); g.stroke(); }
     g.setLineDash([]); g.strokeStyle = themed("line"); g.lineWidth = 1; g.beginPath(); g.moveTo(LEFT, bottom + 0.5); g.lineTo(right, bottom + 0.5); g.stroke();
     g.textAlign = "center"; g.fillStyle = themed("soft");
-    for (const v of ticks(lo, hi, 1, niceStep((hi - lo) / Math.max(1, (right - LEFT) / 62)))) { const px = x(v); g.fillText(brief(v), Math.min(right - 8, px), bottom + 10); g.fillRect(px - 0.5, bottom, 1, 4); }
+    for (const v of ticks(lo, hi, 1, niceStep((hi - lo) / Math.max(1, (right - LEFT) / 46)))) { const px = x(v); g.fillText(brief(v), Math.min(right - 8, px), bottom + 10); g.fillRect(px - 0.5, bottom, 1, 4); }
     g.fillText(`${h.name}, ${h.unit}   (\u2190 too deep, left standing \u2192)`, (LEFT + right) / 2, bottom + 25);
     g.textAlign = "left"; g.fillText("mm\u00b2", 4, TOP + 2);
   });

@@ -337,9 +337,8 @@ Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimit
       const bool by_strips = with.options->objective == Objective::strip &&
                              with.options->search == Search::optimal &&
                              !even_places(families[face], *with.options);
-      auto ok = by_strips
-                    ? plan_strips(families[face], number, with, workers, progress, out)
-                    : plan_family(families[face], number, with, workers, progress, out);
+      auto ok = by_strips ? plan_strips(families[face], number, with, workers, progress, out)
+                          : plan_family(families[face], number, with, workers, progress, out);
       if (!ok) return ok;
       std::size_t points = 0;
       for (const OrientedPath& path : out.paths) points += path.points.size();
