@@ -30,6 +30,7 @@ export class StockMesher {
   private limit = 0;
   private nodes = new Uint8Array(N * N * N);
   private vertex = new Int32Array(E * E * E);
+  private row = new Int32Array(N * N); // how many of a row of nodes are solid
 
   constructor(private clock: ClockData) {
     const { cut, count } = clock, n = cut.length;
@@ -105,7 +106,7 @@ export class StockMesher {
   /** Copies the nodes about a brick; false: all the same. */
   private fill(first: [number, number, number]): boolean {
     const [nx, ny, nz] = this.clock.count, { nodes, solid } = this;
-    nodes.fill(0);
+    nodes.fill(0); this.row.fill(0);
     let sum = 0;
     for (let k = 0; k < N; ++k) {
       const z = first[2] + k;
@@ -114,10 +115,17 @@ export class StockMesher {
         const y = first[1] + j;
         if (y < 0 || y >= ny) continue;
         const x0 = Math.max(0, -first[0]), x1 = Math.min(N, nx - first[0]), from = (z * ny + y) * nx + first[0], to = (k * N + j) * N;
-        for (let i = x0; i < x1; ++i) sum += nodes[to + i] = solid[from + i]!;
+        let here = 0;
+        for (let i = x0; i < x1; ++i) here += nodes[to + i] = solid[from + i]!;
+        this.row[k * N + j] = here; sum += here;
       }
     }
     return sum > 0 && sum < N * N * N;
+  }
+  /** Whether this row of cells has no surface: the four rows of nodes about it are all empty or all full. */
+  private still(j: number, k: number): boolean {
+    const { row } = this, r = k * N + j, s = row[r]!;
+    return (s === 0 || s === N) && row[r + 1] === s && row[r + N] === s && row[r + N + 1] === s;
   }
   /** Share of the step from a node at which the surface crosses its edge; -1: not known. */
   private crossing(x: number, y: number, z: number, d: number): number {
@@ -131,6 +139,7 @@ export class StockMesher {
     const corner = [0, 1, N, N + 1, N * N, N * N + 1, N * N + N, N * N + N + 1], stride = [1, N, N * N];
     vertex.fill(-1);
     for (let k = 0; k < E; ++k) for (let j = 0; j < E; ++j) {
+      if (this.still(j, k)) continue;
       let n = (k * N + j) * N, c = (k * E + j) * E;
       for (let i = 0; i < E; ++i, ++n, ++c) {
         const s = nodes[n]! + nodes[n + 1]! + nodes[n + N]! + nodes[n + N + 1]! + nodes[n + N * N]! + nodes[n + N * N + 1]! + nodes[n + N * N + N]! + nodes[n + N * N + N + 1]!;
@@ -172,7 +181,7 @@ export class StockMesher {
     const node = [1, N, N * N], step = [1, E, E * E];
     let made = 0;
     const lo = HALO - 1, hi = HALO + BRICK + 1;
-    for (let k = lo; k < hi; ++k) for (let j = lo; j < hi; ++j) for (let i = lo; i < hi; ++i) {
+    for (let k = lo; k < hi; ++k) for (let j = lo; j < hi; ++j) for (let i = this.still(j, k) ? hi : lo; i < hi; ++i) {
       const n = (k * N + j) * N + i, c = (k * E + j) * E + i;
       const core = i >= HALO && j >= HALO && k >= HALO && i < HALO + BRICK && j < HALO + BRICK && k < HALO + BRICK;
       for (let d = 0; d < 3; ++d) {
@@ -194,7 +203,7 @@ export class StockMesher {
     for (let v = 0; v < cell.length; ++v) {
       const u = used[v]!;
       if (u < 0) continue;
-      const l = Math.hypot(normal[3 * v]!, normal[3 * v + 1]!, normal[3 * v + 2]!) || 1;
+      const l = Math.sqrt(normal[3 * v]! ** 2 + normal[3 * v + 1]! ** 2 + normal[3 * v + 2]! ** 2) || 1;
       for (let a = 0; a < 3; ++a) { out.position[3 * u + a] = origin[a]! + (first[a]! + place[3 * v + a]!) * size; out.normal[3 * u + a] = normal[3 * v + a]! / l; }
       out.tint[u] = this.wasCut(cell[v]!, first) ? 1 : 0;
     }
