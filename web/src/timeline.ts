@@ -8,6 +8,7 @@ import { brief, duration, fixed, length, stepOf, ticks, TIME_STEPS } from "./log
 import { focus, goNode, goTime, motionOf } from "./seek";
 import { button, choice, el, setIcon, sheet, themed, within } from "./ui";
 
+const narrow = matchMedia("(max-width: 760px)"); // there the figures scroll
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], FIT_SECONDS = 30;
 
 export function togglePlaying(scene: Scene, store: Store): void {
@@ -68,6 +69,8 @@ function readouts(scene: Scene, store: Store): { time: HTMLElement; more: HTMLEl
     say("move", String(path.move[way1])); say("line", path.line[way1] > 0 ? String(path.line[way1]) : "-");
   };
   show(); store.on(["time", "node"], show);
+  // What does not fit is not shown in part.
+  new ResizeObserver(() => { for (const c of more.children) if (c instanceof HTMLElement) c.style.visibility = c.offsetLeft + c.offsetWidth > more.clientWidth + 1 && !narrow.matches ? "hidden" : ""; }).observe(more);
   return { time, more };
 }
 
