@@ -19,6 +19,8 @@ import type { State, Store } from "./state";
 
 export interface Stats { frames: number; frameMs: number; pickMs: number; stockMs: number; stockTriangles: number; waiting: boolean; segments: number; triangles: number; webgl: boolean }
 
+const CURSOR = 9, FINGER = 20; // CSS pixels about them that count as under them
+
 /** What is looked at: bodies and cuts; rapids only when there is nothing else. */
 function shownBox(scene: Scene): Box3 {
   const box = new Box3(), p = new Vector3(), { path } = scene;
@@ -135,8 +137,8 @@ export class Stage {
     on(["theme"], () => this.recolour());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.recolour(); this.invalidate(); });
     listen(canvas, view, {
-      click: (x, y) => this.click(x, y),
-      hover: (x, y) => { this.pointer = { x, y }; this.askHover(); },
+      click: (x, y, touch) => { this.picker.reach = touch ? FINGER : CURSOR; this.click(x, y); },
+      hover: (x, y) => { this.picker.reach = CURSOR; this.pointer = { x, y }; this.askHover(); },
       leave: () => { this.pointer = null; store.set({ hovered: null }); canvas.title = ""; },
       orbitFrom: (x, y) => { const hit = this.picker.surface(this.picker.ray(view, this.partFrame.matrix, this.box, x, y)); if (hit) view.turnAbout(hit.point.applyMatrix4(this.partFrame.matrix)); },
       changed: () => this.invalidate(),
@@ -144,7 +146,9 @@ export class Stage {
     new ResizeObserver(() => { this.resize(); this.invalidate(); }).observe(this.box);
     this.box.addEventListener("draw-now", () => this.draw()); // the canvas is read at once: a picture to save
     matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { this.resize(); this.invalidate(); });
+    this.box.addEventListener("draw-now", () => this.draw()); // before its canvas is read
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
+    this.picker.prepare();
     this.invalidate();
   }
 

@@ -60,7 +60,9 @@ export class Part {
       const { role } = b.mesh;
       b.surface.visible = role === Role.design ? s.show.part : role === Role.obstacle ? s.show.obstacles : s.show.stock && !clocked;
       b.material.uniforms["heat"]!.value = s.heat && b.mesh.value ? 1 : 0;
-      b.material.uniforms["push"]!.value = role === Role.design && s.show.stock && stock ? BURIED * stock.step : 0;
+      const push = role === Role.design && s.show.stock && stock ? BURIED * stock.step : 0;
+      b.material.uniforms["push"]!.value = push;
+      if (b.edges) b.edges.visible = push === 0;
       b.material.uniforms["range"]!.value = heatRange(b.mesh, s.heatRange);
     }
   }
