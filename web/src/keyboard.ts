@@ -39,7 +39,7 @@ function table(scene: Scene, store: Store, stage: HTMLElement, help: () => void)
   add("Page", ["Shift+T"], "theme", () => store.set({ theme: store.state.theme === "dark" ? "light" : store.state.theme === "light" ? "system" : "dark" }));
   add("Page", ["Shift+L"], "copy a link to this time", () => void copyLink(store));
   add("Page", ["Shift+P"], "save the picture", () => savePicture(stage, scene, store));
-  add("Page", ["Escape"], "let go of what was picked", () => store.set({ picked: null, only: null, measuring: false, measured: [] }), "Esc");
+  add("Page", ["Escape"], "let go of what was picked", () => store.set({ picked: null, trial: null, only: null, measuring: false, measured: [] }), "Esc");
   add("Page", ["?"], "this help", help);
   return list;
 }

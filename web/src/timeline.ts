@@ -14,7 +14,7 @@ const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], FIT_SE
 export function togglePlaying(scene: Scene, store: Store): void {
   const m = motionOf(scene);
   if (m.duration <= 0) return;
-  store.set({ playing: !store.state.playing, picked: null });
+  store.set({ playing: !store.state.playing, picked: null, trial: null });
 }
 export function step(scene: Scene, store: Store, by: "node" | "move" | "pass", direction: number): void {
   store.set({ playing: false });
