@@ -24,7 +24,8 @@ export class Range {
     this.set(about - f * w, about - f * w + w);
   }
 }
-export interface Line { y: ArrayLike<number>; colour: string; dash?: boolean }
+/** step: a value of the way that ends there, not of the place. */
+export interface Line { y: ArrayLike<number>; colour: string; dash?: boolean; step?: boolean }
 export interface ChartOptions {
   name: string; unit: string; range: Range;
   x: () => ArrayLike<number>; xKind: () => "time" | "length" | "node";
@@ -98,7 +99,7 @@ export class Chart {
       for (let i = 0, pen = false; i < q.length; i += 2) {
         if (Number.isNaN(q[i + 1])) { pen = false; continue; }
         const px = this.px(q[i]), py = sy(q[i + 1]);
-        if (pen) g.lineTo(px, py); else { g.moveTo(px, py); if (i + 3 >= q.length || Number.isNaN(q[i + 3])) g.lineTo(px + 1.5, py); } // a lonely value is a dot
+        if (pen) { if (l.step) g.lineTo(this.px(q[i - 2]), py); g.lineTo(px, py); } else { g.moveTo(px, py); if (i + 3 >= q.length || Number.isNaN(q[i + 3])) g.lineTo(px + 1.5, py); } // a lonely value is a dot
         pen = true;
       }
       g.stroke();

@@ -18,7 +18,7 @@ function header(scene: Scene, store: Store, stage: HTMLElement, help: () => void
   const m = motionOf(scene), faults = scene.findings.filter(f => f.level === 2).length, warnings = scene.findings.filter(f => f.level === 1).length;
   const sums = el("dl", { class: "sums" });
   const sum = (name: string, value: string, level = "") => sums.append(el("div", { class: level }, el("dt", {}, name), el("dd", {}, value)));
-  if (scene.path.count > 1) { sum("time", duration(m.duration, 0)); sum("way", length(m.length[scene.path.count - 1])); sum("nodes", count(scene.path.count)); }
+  if (scene.path.count > 1) { sum("time", duration(m.duration, 0)); sum("way", length(m.length[scene.path.count - 1])); sum("nodes", count(scene.path.count), "minor"); }
   if (faults) sum(faults === 1 ? "fault" : "faults", count(faults), "bad");
   if (warnings) sum(warnings === 1 ? "warning" : "warnings", count(warnings), "warn");
   const theme = button("sun", "Theme", () => { store.set({ theme: NEXT_THEME[store.state.theme] }); tell(`Theme: ${store.state.theme}`); }, { key: "Shift+T" });

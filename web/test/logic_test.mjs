@@ -256,3 +256,12 @@ test("kerf: the nearest place of an edge, and the beam's ways about a node", () 
   assert.deepEqual(K.beamLines(path, plane, 3).map(l => l.nodes), [[0, 1, 2]]);
   assert.deepEqual([plane.x, plane.y], [[1, 0, 0], [0, 1, 0]]);
 });
+test("kerf: lines and arcs of a contour join, whichever way each of them runs", () => {
+  const side = (...p) => ({ point: Float32Array.from(p.flatMap(([x, y]) => [x, y, 0])), closed: false }), a = [0, 0], b = [10, 0], c = [10, 10.0005], d = [0, 10];
+  const all = K.joined([side(c, b), side(a, b), side([50, 50], [60, 50]), side(d, a), side([10, 10], [5, 11], d), { point: Float32Array.from([1, 1, 0, 2, 1, 0, 2, 2, 0]), closed: true }]);
+  assert.deepEqual(all.map(o => o.closed).sort(), [false, true, true]);
+  const loop = all.find(o => o.closed && o.point.length > 12);
+  let area = 0;
+  for (let i = 0, n = loop.point.length / 3; i < n; ++i) { const j = (i + 1) % n; area += (loop.point[3 * i] * loop.point[3 * j + 1] - loop.point[3 * j] * loop.point[3 * i + 1]) / 2; }
+  near(Math.abs(area), 105, 0.01);
+});

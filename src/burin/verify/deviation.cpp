@@ -11,6 +11,7 @@
 #include "burin/base/parallel.h"
 #include "burin/geom/point_tools.h"
 #include "burin/verify/deviation_search.h"
+#include "burin/verify/mill_walk.h"
 #include "burin/verify/sample_tile.h"
 
 namespace burin::verify {
@@ -95,20 +96,8 @@ Result<void> validate(const CheckedPath& path, const DeviationOptions& options) 
     return range("reach and resolution must be positive");
   if (!(std::isfinite(options.tolerance_mm) && options.tolerance_mm >= 0))
     return range("the tolerance must not be negative");
-  if (!(std::isfinite(path.motion_mm) && path.motion_mm >= 0))
-    return range("what the motion is straightened by must not be negative");
-  const geom::Mesh nothing;
-  for (const ToolPath& tool : path.tools) {
-    PoseMotion poses{tool.from};
-    poses.reserve(tool.pieces.size() + 1);
-    for (const PathPiece& piece : tool.pieces) {
-      if (piece.move >= path.moves.size()) return range("a piece of the path belongs to no move");
-      poses.push_back(piece.to);
-    }
-    if (poses.size() >= Moment::kNone) return range("too many pieces of motion (4,000,000,000 at most)");
-    if (auto ok = check_mill(nothing, tool.tool, poses); !ok) return ok.error();
-  }
-  return {};
+  if (path.piece_count() >= Moment::kNone) return range("too many pieces of motion (4,000,000,000 at most)");
+  return verify::validate(path);
 }
 
 class Measure {

@@ -19,7 +19,7 @@ function column(rows: Float32Array, first: number, of: number, add: number): Flo
 function sources(scene: Scene): Source[] {
   const { path } = scene, list: Source[] = [], once = (make: () => Line[]) => { let l: Line[] | null = null; return () => l ??= make(); };
   scene.series.forEach((s, k) => list.push({ id: `series:${k}`, name: s.name, unit: s.unit, zero: s.signed, degrees: false, on: k < 3, lines: () => [{ y: s.value, colour: "accent" }] }));
-  if (path.feed.some(f => f > 0)) list.push({ id: "feed", name: "Feed", unit: "mm/min", zero: true, degrees: false, on: list.length < 2, lines: () => [{ y: path.feed, colour: "accent" }] });
+  if (path.feed.some(f => f > 0)) list.push({ id: "feed", name: "Feed", unit: "mm/min", zero: true, degrees: false, on: list.length < 2, lines: () => [{ y: path.feed, colour: "accent", step: true }] });
   ["X", "Y", "Z"].forEach((n, k) => list.push({ id: n, name: n, unit: "mm", zero: false, degrees: false, on: n === "Z" && list.length < 3, lines: once(() => [{ y: column(path.point, k, 3, scene.center[k]), colour: "accent" }]) }));
   if (path.rotary) for (const k of [0, 1]) list.push({ id: `r${k}`, name: `${scene.machine?.axes[k]?.letter ?? "AC"[k]} axis`, unit: "\u00b0", zero: false, degrees: true, on: list.length < 6, lines: once(() => [{ y: column(path.rotary!, k, 2, 0), colour: "accent" }]) });
   return list;
