@@ -179,6 +179,8 @@ export class Stage {
     clipOn.value = section.on ? 1 : 0;
     clip.value.set(0, 0, 0, sign * (section.at - this.scene.center[section.axis]!));
     clip.value.setComponent(section.axis, sign);
+    this.part.section();
+    this.stock.section();
   }
 
   private click(x: number, y: number): void {
