@@ -104,3 +104,11 @@ export const roleName = (role: Role): string => ["part", "stock", "obstacle", "r
 export function isDark(state: Pick<State, "theme">): boolean {
   return state.theme === "system" ? matchMedia("(prefers-color-scheme: dark)").matches : state.theme === "dark";
 }
+/** What the deviation is shown on: the meshes that have one, else the outlines; null: none. */
+export function heated(scene: Scene): { name: string; unit: string; range(asked: number): number } | null {
+  const mesh = scene.meshes.find(m => m.value && m.role === Role.design) ?? scene.meshes.find(m => m.value);
+  if (mesh) return { name: mesh.valueName || "deviation", unit: mesh.valueUnit || "mm", range: asked => heatRange(mesh, asked) };
+  let largest = 0;
+  for (const o of scene.outlines) if (o.value) for (const v of o.value) if (Math.abs(v) > largest) largest = Math.abs(v);
+  return scene.outlines.some(o => o.value) ? { name: "deviation", unit: "mm", range: asked => asked > 0 ? asked : largest || 1 } : null;
+}

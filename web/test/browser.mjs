@@ -29,7 +29,7 @@ export async function open(browser, url, { width = 1280, height = 800, dark = fa
   page.on("request", request => { if (!/^(file|data|blob):/.test(request.url()) && !request.url().startsWith(new URL(url).origin + "/")) faults.push("request: " + request.url()); });
   const start = Date.now();
   await page.goto(url);
-  await page.waitForFunction(() => window.burin?.ready === true, null, { timeout: 60_000 });
+  await page.waitForFunction(() => window.burin !== undefined, null, { timeout: 60_000 });
   return { page, faults, milliseconds: Date.now() - start, close: () => context.close() };
 }
 

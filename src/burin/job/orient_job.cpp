@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "burin/base/text.h"
+#include "burin/job/job_tables.h"
 #include "burin/model/machine.h"
 #include "burin/model/toml_reader.h"
 
@@ -126,7 +127,9 @@ model::PropellerData read_propeller(TomlReader& reader, const toml::table& table
   return p;
 }
 
-void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job) {
+}  // namespace
+
+void read_orient_part(TomlReader& reader, const toml::table& table, bool contacts, OrientJobFile& job) {
   reader.only_keys(table, {"surface", "mesh", "propeller", "faces", "flip", "obstacles", "contacts"});
   std::string kind;
   for (const std::string key : {"surface", "mesh", "propeller"}) {
@@ -153,7 +156,7 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
   }
   if (kind == "mesh") {
     job.part = OrientMesh{file(reader, table, "mesh"), flip};
-    if (!has(table, "contacts"))
+    if (contacts && !has(table, "contacts"))
       reader.fail(*table.get("mesh"),
                   "\"mesh\" without \"contacts\": triangles have no paths of their own (contacts = "
                   "\"points.csv\": path,x,y,z,nx,ny,nz,fx,fy,fz)");
@@ -161,6 +164,8 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
 }
 
 // --- [tool]
+
+namespace {
 
 void read_pieces(TomlReader& reader, const toml::table& table, std::string_view key, model::Mill& mill) {
   for (const toml::table* piece : reader.tables(table, key)) {
@@ -170,8 +175,12 @@ void read_pieces(TomlReader& reader, const toml::table& table, std::string_view 
   }
 }
 
-model::Mill read_tool(TomlReader& reader, const toml::table& table) {
-  reader.only_keys(table, {"kind", "radius", "corner_radius", "length", "shank", "holder", "head"});
+}  // namespace
+
+model::Mill read_mill(TomlReader& reader, const toml::table& table, const std::vector<std::string>& besides) {
+  std::vector<std::string> keys = {"kind", "radius", "corner_radius", "length", "shank", "holder", "head"};
+  keys.insert(keys.end(), besides.begin(), besides.end());
+  reader.only_keys(table, keys);
   model::Mill mill;
   mill.kind = reader.choice<model::MillKind>(
       table, "kind", {{"flat", model::MillKind::flat}, {"bull", model::MillKind::bull}}, mill.kind);
@@ -189,6 +198,8 @@ model::Mill read_tool(TomlReader& reader, const toml::table& table) {
 }
 
 // --- [operation]
+
+namespace {
 
 const std::vector<std::string> kOperationKeys = {
     "paths",     "plane_normal", "tilt",       "yaw",      "tolerance", "clearance",
@@ -260,6 +271,8 @@ orient::OrientOptions read_operation(TomlReader& reader, const toml::table& tabl
 
 // --- [machine]
 
+}  // namespace
+
 std::string read_machine(TomlReader& reader, const toml::table& table) {
   reader.only_keys(table, {"name"});
   std::string name = reader.text(table, "name");
@@ -276,16 +289,14 @@ std::string read_machine(TomlReader& reader, const toml::table& table) {
   return name;
 }
 
-}  // namespace
-
 Result<OrientJobFile> read_orient_job(std::string_view text, const std::string& file_name) {
   TomlReader reader(file_name);
   const toml::table root = reader.parse(text);
   if (reader.error()) return *reader.error();
-  reader.only_keys(root, {"part", "tool", "operation", "machine"});
+  reader.only_keys(root, {"part", "tool", "operation", "machine", "stock"});  // [stock]: `burin verify`
   OrientJobFile job;
-  read_part(reader, reader.subtable(root, "part"), job);
-  job.mill = read_tool(reader, reader.subtable(root, "tool"));
+  read_orient_part(reader, reader.subtable(root, "part"), true, job);
+  job.mill = read_mill(reader, reader.subtable(root, "tool"));
   const toml::table no_table;
   const toml::table& operation = has(root, "operation") ? reader.subtable(root, "operation") : no_table;
   job.options = read_operation(reader, operation, !job.contacts.empty());

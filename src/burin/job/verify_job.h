@@ -35,6 +35,8 @@ struct VerifyOptions {
   std::optional<double> tolerance_mm;  ///< else the job's, else 0.01
   bool tcp = false;                    ///< poses of CL data run by tool-centre-point control (default)
   bool joints = false;                 ///< CL data posted to joint-linear moves of the machine
+  double resolution_mm = 0;            ///< of the stock; 0: from its size
+  bool keep_times = false;             ///< of the stock, for the viewer's clock
   unsigned threads = 0;
 };
 

@@ -14,8 +14,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "burin/geom/vec.h"
+#include "burin/verify/mill_check.h"
 
 namespace burin::verify {
 
@@ -35,6 +37,13 @@ struct MillBody {
     return up < 0 ? (radius - corner) * aside + corner + up * (low + corner) : radius * aside + up * high;
   }
 };
+
+/// The cutter, then its cylinders.
+inline std::vector<MillBody> bodies_of(const CheckedMill& tool) {
+  std::vector<MillBody> out{{tool.radius, 0, tool.length, tool.corner_radius}};
+  for (const ToolCylinder& c : tool.cylinders) out.push_back({c.radius, c.from, c.to, 0});
+  return out;
+}
 
 /// One of the functions at a place.
 struct BodySide {

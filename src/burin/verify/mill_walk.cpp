@@ -33,23 +33,6 @@ std::vector<Block> blocks_of(const CheckedPath& path) {
   return blocks;
 }
 
-Result<void> validate(const CheckedPath& path) {
-  if (!(std::isfinite(path.motion_mm) && path.motion_mm >= 0))
-    return Error{ErrorCode::range, "the bound of the motion is no number (0 or more)", {}};
-  for (const ToolPath& tool : path.tools) {
-    if (auto ok = validate(tool.tool); !ok) return ok.error();
-    const cl::Pose* from = &tool.from;
-    if (auto ok = validate_pose(*from, tool.pieces.empty() ? 0 : tool.pieces.front().move); !ok)
-      return ok.error();
-    for (const PathPiece& piece : tool.pieces) {
-      if (auto ok = validate_pose(piece.to, piece.move); !ok) return ok.error();
-      if (auto ok = validate_turn(*from, piece.to, piece.move); !ok) return ok.error();
-      from = &piece.to;
-    }
-  }
-  return {};
-}
-
 Around around(const Step* begin, const Step* end, double span) {
   geom::Box3 tips;
   geom::Vec3 sum;
