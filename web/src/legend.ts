@@ -23,7 +23,7 @@ function limits(text: string, lo: number, hi: number, act: (lo: number, hi: numb
   const field = (name: string, v: number) => el("input", { type: "number", step: "any", class: "num", "aria-label": `${text}: ${name}`, value: brief(v) });
   const a = field("from", lo), b = field("to", hi), change = () => { const p = Number(a.value), q = Number(b.value); if (a.value !== "" && b.value !== "" && q > p) act(p, q); };
   a.addEventListener("change", change); b.addEventListener("change", change);
-  return el("details", { class: "limits" }, el("summary", { title: "Set the range of the colours" }, "range"), el("span", {}, a, "to", b, reset && el("button", { type: "button", onclick: reset }, "auto")));
+  return el("details", { class: "limits", "data-of": text }, el("summary", { title: "Set the range of the colours" }, "range"), el("span", {}, a, "to", b, reset && el("button", { type: "button", onclick: reset }, "auto")));
 }
 
 export function makeLegend(scene: Scene, store: Store): HTMLElement {
@@ -49,12 +49,12 @@ export function makeLegend(scene: Scene, store: Store): HTMLElement {
     if (state.heat && heat) {
       const r = heat.range(state.heatRange);
       out.push(el("b", {}, heat.name), ramp(v => divergingColour(v / r, dark), -r, r, heat.unit), el("small", {}, "\u2212 gouge, + left"),
-        limits(heat.name, -r, r, (lo, hi) => store.set({ heatRange: Math.max(Math.abs(lo), Math.abs(hi)) }), state.heatRange > 0 ? () => store.set({ heatRange: 0 }) : null));
+        limits(`${heat.name} on the part`, -r, r, (lo, hi) => store.set({ heatRange: Math.max(Math.abs(lo), Math.abs(hi)) }), state.heatRange > 0 ? () => store.set({ heatRange: 0 }) : null));
     }
     if (state.show.obstacles && scene.meshes.some(m => m.role === Role.obstacle)) out.push(item("var(--obstacle)", "fixtures", "cell"));
-    const open = box.querySelector("details[open]") !== null;
+    const open = [...box.querySelectorAll<HTMLElement>("details[open]")].map(d => d.dataset.of);
     box.replaceChildren(...out);
-    if (open) box.querySelector("details")?.setAttribute("open", "");
+    box.querySelectorAll<HTMLDetailsElement>("details").forEach(d => { d.open = open.includes(d.dataset.of); });
     box.hidden = out.length === 0;
   };
   show();

@@ -40,6 +40,7 @@ export class Stage {
   private renderer: WebGLRenderer | null = null;
   private root = new Root();
   private partFrame = new Group(); // turned by the table
+  private shown!: Box3; // in the part's frame
   private view!: View;
   private overlay!: Overlay;
   private part!: Part;
@@ -68,7 +69,7 @@ export class Stage {
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "Part and tool path. Shift and arrows turn, Alt and arrows move, + and - zoom.");
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance" });
+    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, stencil: true, powerPreference: "high-performance" });
     if (!gl) { this.withoutGraphics(); return; }
     box.append(canvas);
     this.renderer = new WebGLRenderer({ canvas, context: gl });
@@ -92,10 +93,11 @@ export class Stage {
     const all = shown.clone().expandByPoint(new Vector3(...toStage(scene.box.lo, scene.center))).expandByPoint(new Vector3(...toStage(scene.box.hi, scene.center)));
     const tool = Math.max(0, ...scene.tools.flatMap(t => t.pieces.map(p => p.high)));
     all.expandByScalar(tool + (scene.machine?.axes.some(a => a.table) ? 1.5 * size : 0.2 * size));
+    this.shown = shown;
     this.view = new View(all, shown, flat);
     this.overlay = new Overlay(this.box);
     this.part = new Part(ctx);
-    this.path = new PathLines(ctx);
+    this.path = new PathLines(ctx, shown.getSize(new Vector3()));
     this.outlines = new Outlines(ctx);
     this.tool = new ToolView(ctx, size);
     this.stock = new StockView(ctx);
@@ -123,7 +125,7 @@ export class Stage {
     on(["colour", "range", "only"], () => this.path.recolour());
     on(["heat", "heatRange"], () => { this.part.update(); this.outlines.update(); });
     on(["hovered", "picked"], () => this.path.highlight());
-    on(["asMachine"], () => this.turnTable());
+    on(["asMachine"], () => { this.turnTable(); view.shown = this.shown.clone().applyMatrix4(this.partFrame.matrix); view.fit(); });
     on(["section"], () => this.section());
     on(["measuring"], s => { canvas.style.cursor = s.measuring ? "crosshair" : ""; });
     on(["measured"], () => this.measured.update());
@@ -140,6 +142,7 @@ export class Stage {
       changed: () => this.invalidate(),
     });
     new ResizeObserver(() => { this.resize(); this.invalidate(); }).observe(this.box);
+    this.box.addEventListener("draw-now", () => this.draw()); // the canvas is read at once: a picture to save
     matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { this.resize(); this.invalidate(); });
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
     this.invalidate();
@@ -234,7 +237,7 @@ export class Stage {
       const a = at(measured[0]!), p = measured[0]!;
       out.push({ text: p.map((v, i) => `${"xyz"[i]} ${v.toFixed(3)}`).join("  "), x: a.x + 12, y: a.y + 8 });
     } else if (measuring) out.push({ text: "Click two points.", x: 12, y: 12 });
-    for (const l of this.axes.labels) { const p = this.onBox(l.place); out.push({ text: l.text, x: p.x, y: p.y }); }
+    for (const l of this.axes.labels) { const p = this.onBox(l.place); out.push({ text: l.text, x: p.x, y: p.y, free: true }); }
     return out;
   }
   /** Of the stage's machine frame, in CSS pixels of the box. */

@@ -160,7 +160,8 @@ export function makeTimeline(scene: Scene, store: Store): HTMLElement {
   const buttons = el("div", { class: "transport", role: "group", "aria-label": "Player" },
     button("passBack", "Pass before", go("pass", -1), { key: "[" }), button("moveBack", "Move before", go("move", -1), { key: "Shift+Left" }), button("back", "Node before", go("node", -1), { key: "Left" }), playing,
     button("on", "Next node", go("node", 1), { key: "Right" }), button("moveOn", "Next move", go("move", 1), { key: "Shift+Right" }), button("passOn", "Next pass", go("pass", 1), { key: "]" }), speedMenu(scene, store));
-  const { time, more } = readouts(scene, store);
+  const { time, more } = readouts(scene, store), long = motionOf(scene).duration;
+  if (long > 4 * FIT_SECONDS && store.state.speed === 1) store.set({ speed: long / FIT_SECONDS });
   const box = el("footer", { class: "timeline", "aria-label": "Timeline" }, buttons, time, more, strip(scene, store));
   if (scene.path.count < 2) box.hidden = true;
   return box;

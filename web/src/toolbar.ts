@@ -20,7 +20,7 @@ export const SHOWN: [keyof State["show"], string, string, (s: Scene) => boolean]
 ];
 export const turns = (scene: Scene): boolean => scene.path.rotary !== null && (scene.machine?.axes.some(a => a.table) ?? false);
 export function toggleSection(scene: Scene, store: Store): void {
-  const s = store.state.section, { lo, hi } = scene.box, inside = s.at > lo[s.axis] && s.at < hi[s.axis];
+  const s = store.state.section, { lo, hi } = scene.box, inside = s.at !== 0 && s.at > lo[s.axis] && s.at < hi[s.axis]; // 0: not chosen yet
   store.set({ section: { ...s, on: !s.on, at: inside ? s.at : (lo[s.axis] + hi[s.axis]) / 2 } });
 }
 export function toggleMeasuring(store: Store): void { store.set({ measuring: !store.state.measuring, measured: [] }); }
@@ -75,7 +75,8 @@ function viewMenu(store: Store): HTMLElement {
 function sectionBar(scene: Scene, store: Store): HTMLElement {
   const { lo, hi } = scene.box, slider = el("input", { type: "range", step: "any", "aria-label": "Place of the section plane" }), number = el("input", { type: "number", class: "num", "aria-label": "Place of the section plane, mm" });
   const set = (change: Partial<State["section"]>) => store.set({ section: { ...store.state.section, ...change } });
-  const axes = (["X", "Y", "Z"] as const).map((letter, k) => el("button", { type: "button", onclick: () => set({ axis: k as 0 | 1 | 2, at: (lo[k] + hi[k]) / 2 }), "aria-label": `Section across ${letter}` }, letter));
+  // The corner view sees the faces of a cut across X and Z from their upper side, of one across Y from the lower.
+  const axes = (["X", "Y", "Z"] as const).map((letter, k) => el("button", { type: "button", onclick: () => set({ axis: k as 0 | 1 | 2, at: (lo[k] + hi[k]) / 2, flip: k === 1 }), "aria-label": `Section across ${letter}` }, letter));
   slider.addEventListener("input", () => set({ at: Number(slider.value) }));
   number.addEventListener("change", () => set({ at: Number(number.value) }));
   const bar = el("div", { class: "bar sub", role: "group", "aria-label": "Section plane" }, el("span", { class: "soft" }, "Section across"), el("span", { class: "joined" }, ...axes), slider, number, el("span", { class: "soft" }, "mm"),

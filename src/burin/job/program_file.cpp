@@ -94,8 +94,9 @@ void find_described(std::string_view text, ProgramFile& file) {
 }
 
 Result<void> read_nc(std::string_view text, const std::string& name, const kinematics::Kinematics* machine,
-                     ProgramFile& file, Diagnostics& diagnostics) {
+                     bool beam, ProgramFile& file, Diagnostics& diagnostics) {
   nc::InterpretOptions options;
+  options.beam = beam;
   options.file_name = name;
   options.machine = machine;
   file.is_nc = true;
@@ -133,7 +134,7 @@ ProgramKind kind_of_program(std::string_view text) {
 }
 
 Result<ProgramFile> read_program(std::string_view text, const std::string& file_name,
-                                 const kinematics::Kinematics* machine, Diagnostics& diagnostics) {
+                                 const kinematics::Kinematics* machine, Diagnostics& diagnostics, bool beam) {
   const Where where{.file = file_name};
   ProgramFile file;
   switch (kind_of_program(text)) {
@@ -144,7 +145,7 @@ Result<ProgramFile> read_program(std::string_view text, const std::string& file_
       return Error{ErrorCode::syntax,
                    "neither APT CL data (GOTO/x,y,z) nor a part program (G1 X Y Z) was found in it", where};
     case ProgramKind::nc:
-      if (auto ok = read_nc(text, file_name, machine, file, diagnostics); !ok) return ok.error();
+      if (auto ok = read_nc(text, file_name, machine, beam, file, diagnostics); !ok) return ok.error();
       break;
     case ProgramKind::cl: {
       auto program = cl::read_apt(text, {.file_name = file_name}, diagnostics);

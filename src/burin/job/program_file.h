@@ -33,8 +33,10 @@ struct ProgramFile {
   std::map<int, cl::ToolChange> described;
 };
 /// `machine`: with rotary axes, else nullptr. Errors: of the readers, with file, line and column; a program
-/// of another kind (syntax, says which); one that moves nothing (geometry).
+/// of another kind (syntax, says which); one that moves nothing (geometry). `beam`: S, M3 and M4 of NC are a
+/// beam.
 Result<ProgramFile> read_program(std::string_view text, const std::string& file_name,
-                                 const kinematics::Kinematics* machine, Diagnostics& diagnostics);
+                                 const kinematics::Kinematics* machine, Diagnostics& diagnostics,
+                                 bool beam = false);
 
 }  // namespace burin::job

@@ -10,7 +10,6 @@
 #include "burin/job/machine_file.h"
 #include "burin/job/program_file.h"
 #include "burin/job/verify_design.h"
-#include "burin/job/verify_laser.h"
 #include "burin/job/verify_tools.h"
 #include "burin/kinematics/joint_path.h"
 
@@ -48,7 +47,7 @@ class Reader {
       return Error{ErrorCode::usage, "a drawing needs the width of the cut (--kerf MM)", {}};
     auto bytes = read_(options_.design);
     if (!bytes) return bytes.error();
-    auto outlines = read_laser_outlines(*bytes, options_.design, {}, diagnostics_);
+    auto outlines = read_laser_outlines(*bytes, options_.design, options_.laser, diagnostics_);
     if (!outlines) return outlines.error();
     auto text = read_(options_.path);
     if (!text) return text.error();

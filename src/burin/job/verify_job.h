@@ -12,6 +12,7 @@
 #include "burin/base/result.h"
 #include "burin/cl/program.h"
 #include "burin/job/file_source.h"
+#include "burin/job/verify_laser.h"
 #include "burin/kinematics/kinematics.h"
 #include "burin/removal/removal.h"
 #include "burin/verify/beam_check.h"
@@ -28,6 +29,7 @@ struct VerifyOptions {
   std::optional<std::string> machine;  ///< else the job's; NC with rotary words needs one
   std::optional<double> tool_diameter, tool_corner, tool_length;  ///< else the job's, else CUTTER/
   std::optional<double> kerf_mm;                                  ///< laser
+  LaserOutlineOptions laser;
   std::optional<std::string> stock;  ///< "block", "cylinder", STL; else [stock] of the job; else none
   std::optional<std::size_t> samples;
   std::optional<double> spacing_mm;

@@ -36,9 +36,12 @@ struct LaserOutlines {
 };
 /// Whether `file` is named like a drawing (.dxf, .svg).
 bool is_drawing(std::string_view file);
+/// By the name's ending. Errors: of the readers; no kind of drawing (usage).
+Result<io::Drawing> read_drawing(std::string_view bytes, const std::string& file, io::Units units,
+                                 Diagnostics& diagnostics);
 /// Curves are joined as `burin laser` joins them (what was repaired or left out goes to `diagnostics`); which
-/// side the part is on is found here. Errors: of the readers; no kind of drawing (usage); an unknown layer
-/// (usage); nothing to cut (geometry).
+/// side the part is on is found here. Errors: as read_drawing; an unknown layer (usage); nothing to cut
+/// (geometry).
 Result<LaserOutlines> read_laser_outlines(std::string_view bytes, const std::string& file,
                                           const LaserOutlineOptions& options, Diagnostics& diagnostics);
 /// CL or NC, told by content; S, M3 and M4 are the beam.

@@ -53,6 +53,18 @@ geom::Box3 box_of(const verify::MillBody& body, const verify::Placed& at) {
   return box;
 }
 
+/// From the middle of the tip's way to the farthest corner of the box, and half of the way.
+double reach(const Cut& cut) {
+  double far2 = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double tip = component(cut.motion.tip, i);
+    const double d = std::max(std::abs(static_cast<double>(cut.box.lo[i]) - tip),
+                              std::abs(static_cast<double>(cut.box.hi[i]) - tip));
+    far2 += d * d;
+  }
+  return std::sqrt(far2) + 0.5 * norm(cut.motion.way);
+}
+
 }  // namespace
 
 Result<void> validate(const verify::CheckedPath& path) {
@@ -121,7 +133,7 @@ std::vector<Cut> CutSource::next(std::size_t most) {
     const verify::PathPiece& piece = tool.pieces[piece_];
     const cl::Pose& from = piece_ == 0 ? tool.from : tool.pieces[piece_ - 1].to;
     verify::Stretch stretch = verify::Stretch::between(from, piece.to);
-    stretch.from.tip = Point3{} + (stretch.from.tip - grid_.origin);
+    stretch.middle.tip = Point3{} + (stretch.middle.tip - grid_.origin);
     const int parts = Motion::parts(stretch, span_, 0.5 * tolerance_);
     for (int k = 0; k < parts; ++k)
       add(out, Motion::part(stretch, static_cast<double>(k) / parts, static_cast<double>(k + 1) / parts),
@@ -144,14 +156,16 @@ void CutSource::add(std::vector<Cut>& out, const Motion& motion, const verify::P
     }
     // What a turning axis leaves between its ends, and rounding to single precision.
     box = box.grown((motion.turns ? tolerance_ : 0) + 1e-6 * std::max({grid_.length(0), grid_.length(1), grid_.length(2)}));
-    Cut cut{motion, {}, p.body, p.kind, piece.rapid || p.kind != Body::cutter, piece.move};
+    Cut cut{motion, {}, p.body, p.kind, piece.rapid || p.kind != Body::cutter, piece.move, 0};
     bool reaches = true;
     for (std::size_t i = 0; i < 3; ++i) {
       const double lo = std::max(component(box.lo, i), 0.0), hi = std::min(component(box.hi, i), grid_.length(i));
       reaches = reaches && lo < hi;
       cut.box.lo[i] = static_cast<float>(lo), cut.box.hi[i] = static_cast<float>(hi);
     }
-    if (reaches) out.push_back(cut);
+    if (!reaches) continue;
+    cut.reach = std::min(reach(cut), std::hypot(p.body.radius, std::max(std::abs(p.body.low), std::abs(p.body.high))));
+    out.push_back(cut);
   }
 }
 

@@ -31,6 +31,7 @@ struct Cut {
   verify::Body kind = verify::Body::cutter;
   bool contact = false;  ///< must not take anything
   std::uint32_t move = 0;
+  double reach = 0;  ///< no place of the piece inside the stock is farther from the tip
 };
 
 /// Errors: tools and poses that are impossible (range, geometry; names the move).

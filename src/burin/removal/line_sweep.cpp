@@ -50,7 +50,8 @@ int Motion::parts(const verify::Stretch& stretch, double span, double tolerance)
       std::ceil(std::max(std::sqrt(bend / tolerance), turn / kTurn)), 1.0, double{kMostParts}));
 }
 
-LineSweep::LineSweep(const verify::MillBody& body, const Motion& motion, std::size_t along, double tolerance)
+LineSweep::LineSweep(const verify::MillBody& body, const Motion& motion, std::size_t along, double tolerance,
+                     double reach)
     : body_(body),
       motion_(motion),
       along_(along),
@@ -61,6 +62,15 @@ LineSweep::LineSweep(const verify::MillBody& body, const Motion& motion, std::si
       tip_v_(component(motion.tip, v_)),
       tip_h_(component(motion.tip, along)) {
   straight_ = frame(motion.way);
+  const double grow = 0.5 * (norm(motion.way) + norm(motion.turn) * reach) + tolerance;
+  const double across = straight_.e1 * straight_.e1 + straight_.e2 * straight_.e2;
+  grown_ = {(body.radius + grow) * (body.radius + grow),
+            body.low - grow,
+            body.high + grow,
+            body.low + body.radius,
+            across > kNone ? 1 / across : 0,
+            std::abs(straight_.e3) > kNone ? 1 / straight_.e3 : 0,
+            body.corner >= body.radius};
   if (!motion.turns) return;
   const Vec3 e{along == 0 ? 1.0 : 0.0, along == 1 ? 1.0 : 0.0, along == 2 ? 1.0 : 0.0};
   along_turn_ = cross(motion.turn, e);
@@ -92,6 +102,39 @@ LineSweep::Place LineSweep::place(const Frame& f, double du, double dv) const {
   return {du * component(f.first, u_) + dv * component(f.first, v_),
           du * component(f.second, u_) + dv * component(f.second, v_),
           du * component(f.axis, u_) + dv * component(f.axis, v_)};
+}
+
+LineSweep::Bounds LineSweep::around(double u, double v) const {
+  const Frame& f = straight_;
+  const Place p = place(f, u - tip_u_, v - tip_v_);
+  const double c = p.x * p.x + p.y * p.y - grown_.radius2, b = p.x * f.e1 + p.y * f.e2;
+  double from = -kInfinity, to = kInfinity;
+  if (grown_.per_e > 0) {
+    const double d = b * b - (1 - f.e3 * f.e3) * c;
+    if (d < 0) return {};
+    const double r = std::sqrt(d);
+    from = (-b - r) * grown_.per_e, to = (-b + r) * grown_.per_e;
+  } else if (c > 0) {
+    return {};
+  }
+  if (grown_.per_e3 != 0) {
+    const double s = (grown_.low - p.z) * grown_.per_e3, t = (grown_.high - p.z) * grown_.per_e3;
+    from = std::max(from, std::min(s, t)), to = std::min(to, std::max(s, t));
+  } else if (p.z < grown_.low || p.z > grown_.high) {
+    return {};
+  }
+  if (grown_.ball) {
+    const double z = p.z - grown_.center;
+    const bool low_a = z + from * f.e3 < 0, low_b = z + to * f.e3 < 0;
+    if (low_a || low_b) {
+      const double bs = b + z * f.e3, d = bs * bs - (c + z * z);
+      if (d < 0 && low_a && low_b) return {};
+      const double r = std::sqrt(std::max(d, 0.0));
+      if (low_a) from = std::max(from, -bs - r);
+      if (low_b) to = std::min(to, -bs + r);
+    }
+  }
+  return {from + tip_h_, to + tip_h_};
 }
 
 Covered LineSweep::line(double u, double v) {

@@ -39,13 +39,20 @@ struct Covered {
   }
 };
 
-/// One piece of a tool, one motion, lines along the coordinate axis `along`; a line is named by its places
+/// One piece of a tool, one motion, no place farther than `reach` from the tip of interest, lines along the coordinate axis `along`; a line is named by its places
 /// on the next axes u and v.
 class LineSweep {
  public:
-  LineSweep(const verify::MillBody& body, const Motion& motion, std::size_t along, double tolerance);
+  LineSweep(const verify::MillBody& body, const Motion& motion, std::size_t along, double tolerance,
+            double reach);
   LineSweep(const LineSweep&) = delete;
   LineSweep& operator=(const LineSweep&) = delete;
+
+  /// A little more than line() would find, or nothing when it finds nothing: quickly.
+  struct Bounds {
+    double a = 0, b = -1;
+  };
+  Bounds around(double u, double v) const;
 
   /// Exact for a constant axis but at the rounded edge of a bull nose (there within the tolerance); ends of
   /// a turning one are those of a tool displaced by at most the tolerance.
@@ -83,6 +90,11 @@ class LineSweep {
   std::size_t along_, u_, v_;
   double tolerance_;
   geom::Vec3 along_turn_;  ///< turn x direction of the line: how the way changes along it
+  /// The piece about its middle, grown by half of what its places move: for around().
+  struct Grown {
+    double radius2 = 0, low = 0, high = 0, center = 0, per_e = 0, per_e3 = 0;
+    bool ball = false;
+  } grown_;
   double tip_u_ = 0, tip_v_ = 0, tip_h_ = 0;
   double du_ = 0, dv_ = 0;  ///< of the line looked at last
   Frame straight_, turned_, turned_a_, turned_b_;

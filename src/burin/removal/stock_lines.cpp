@@ -48,7 +48,7 @@ Result<void> fill(DexelField& field, const CylinderStock& cylinder, unsigned thr
   still.tip = Point3{} + (cylinder.base - grid.origin);
   still.axis = unit(cylinder.axis);
   parallel_for(field.tile_count(), threads, [&](std::size_t t, std::size_t) {
-    LineSweep sweep({cylinder.radius, 0, cylinder.length, 0}, still, field.axis(), 0);
+    LineSweep sweep({cylinder.radius, 0, cylinder.length, 0}, still, field.axis(), 0, 0);
     for_lines(field, t, [&](std::uint32_t u, std::uint32_t v, std::uint32_t l) {
       const Covered c = sweep.line((u + 0.5) * grid.step[field.u_axis()], (v + 0.5) * grid.step[field.v_axis()]);
       const Span s{static_cast<float>(c.a), static_cast<float>(c.b)};

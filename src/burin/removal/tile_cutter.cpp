@@ -12,29 +12,26 @@ namespace {
 // Remains thinner than this share of the step are rounding.
 constexpr double kSliver = 1e-4;
 
-/// The lines of a row that may come near a tool: projected along the lines, it lies in a strip about its axis.
+/// Projected along the lines, the sweep of a tool lies in a strip: about its axis, and about its way.
 struct Strip {
-  double tip_u = 0, tip_v = 0, n_u = 0, n_v = 0, half = 0;
+  double at_u = 0, at_v = 0, n_u = 0, n_v = 0, half = 0;
   bool any = false;
 
-  Strip(const Cut& cut, std::size_t u_axis, std::size_t v_axis, double tolerance)
-      : tip_u(component(cut.motion.tip, u_axis)), tip_v(component(cut.motion.tip, v_axis)) {
-    const double a_u = component(cut.motion.axis, u_axis), a_v = component(cut.motion.axis, v_axis);
-    const double length = std::hypot(a_u, a_v);
-    // Nearly along the lines the box says as much.
-    constexpr double kShort = 1e-3;
+  /// Along `direction`; axis and way as (u, v).
+  Strip(geom::Vec2 direction, geom::Point2 center, geom::Vec2 axis, geom::Vec2 way, double grow)
+      : at_u(center.x), at_v(center.y) {
+    const double length = norm(direction);
+    // Shorter ones say no more than the box; a strip along a row takes all of it or nothing.
+    constexpr double kShort = 1e-3, kFlat = 1e-6;
     if (length < kShort) return;
-    n_u = -a_v / length, n_v = a_u / length;
-    const double span = std::max(std::abs(cut.body.low), std::abs(cut.body.high));
-    half = cut.body.radius +
-           0.5 * std::abs(n_u * component(cut.motion.way, u_axis) + n_v * component(cut.motion.way, v_axis)) +
-           tolerance + (cut.motion.turns ? 0.5 * norm(cut.motion.turn) * (span + cut.body.radius) : 0);
-    constexpr double kFlat = 1e-6;  // a strip along the row: all or nothing of it
+    const geom::Vec2 n = left(direction) / length;
+    n_u = n.x, n_v = n.y;
+    half = 0.5 * (std::abs(dot(n, axis)) + std::abs(dot(n, way))) + grow;
     any = std::abs(n_u) > kFlat;
   }
   void clip(double v, double& lo, double& hi) const {
     if (!any) return;
-    const double middle = tip_u - n_v * (v - tip_v) / n_u, far = half / std::abs(n_u);
+    const double middle = at_u - n_v * (v - at_v) / n_u, far = half / std::abs(n_u);
     lo = std::max(lo, middle - far), hi = std::min(hi, middle + far);
   }
 };
@@ -92,13 +89,20 @@ TileCutter::Range TileCutter::lines(float lo, float hi, std::size_t axis, const 
 
 void TileCutter::cut(const Cut& cut) {
   const Range rows = lines(cut.box.lo[v_axis_], cut.box.hi[v_axis_], v_axis_, v_);
-  const Strip strip(cut, u_axis_, v_axis_, limits_.tolerance);
+  const auto uv = [&](auto p) { return geom::Vec2{component(p, u_axis_), component(p, v_axis_)}; };
+  const geom::Vec2 axis = (cut.body.high - cut.body.low) * uv(cut.motion.axis), way = uv(cut.motion.way);
+  const geom::Point2 center =
+      geom::Point2{} + uv(cut.motion.tip + 0.5 * (cut.body.low + cut.body.high) * cut.motion.axis);
+  const double grow = cut.body.radius + limits_.tolerance +
+                      (cut.motion.turns ? 0.5 * norm(cut.motion.turn) * cut.reach : 0);
+  const Strip beside_axis(axis, center, axis, way, grow), beside_way(way, center, axis, way, grow);
   std::optional<LineSweep> sweep, deep;
   const float lo = cut.box.lo[axis_], hi = cut.box.hi[axis_];
   bool any = false;
   for (std::uint32_t v = rows.from; v < rows.to; ++v) {
     double from = static_cast<double>(cut.box.lo[u_axis_]), to = static_cast<double>(cut.box.hi[u_axis_]);
-    strip.clip((v + 0.5) * step_v_, from, to);
+    beside_axis.clip((v + 0.5) * step_v_, from, to);
+    beside_way.clip((v + 0.5) * step_v_, from, to);
     const Range row = lines(static_cast<float>(from), static_cast<float>(to), u_axis_, u_);
     for (std::uint32_t u = row.from; u < row.to; ++u) {
       const std::uint32_t l = DexelField::in_tile(u, v);
@@ -107,23 +111,26 @@ void TileCutter::cut(const Cut& cut) {
       while (s != end && s->hi <= lo) ++s;
       if (s == end || s->lo >= hi) continue;
       if (!sweep) {
-        sweep.emplace(cut.body, cut.motion, axis_, limits_.tolerance);
+        sweep.emplace(cut.body, cut.motion, axis_, limits_.tolerance, cut.reach);
         verify::MillBody inner = cut.body;
         if (cut.contact && shrink(inner, limits_.contact))
-          deep.emplace(inner, cut.motion, axis_, limits_.tolerance);
+          deep.emplace(inner, cut.motion, axis_, limits_.tolerance, cut.reach);
       }
-      line(cut, u, v, *sweep, deep ? &*deep : nullptr);
-      any = true;
+      const LineSweep::Bounds around = sweep->around((u + 0.5) * step_u_, (v + 0.5) * step_v_);
+      const auto a = static_cast<float>(around.a), b = static_cast<float>(around.b);
+      while (s != end && s->hi <= a) ++s;
+      if (s == end || s->lo >= b || !(a < b)) continue;
+      any |= line(cut, u, v, *sweep, deep ? &*deep : nullptr);
     }
   }
   if (any) tile_.count_parts(per_mm_);
 }
 
-void TileCutter::line(const Cut& cut, std::uint32_t u, std::uint32_t v, LineSweep& sweep, LineSweep* deep) {
+bool TileCutter::line(const Cut& cut, std::uint32_t u, std::uint32_t v, LineSweep& sweep, LineSweep* deep) {
   const double pu = (u + 0.5) * step_u_, pv = (v + 0.5) * step_v_;
   const Covered c = sweep.line(pu, pv);
   const auto a = static_cast<float>(c.a), b = static_cast<float>(c.b);
-  if (c.empty() || !(a < b)) return;
+  if (c.empty() || !(a < b)) return false;
   const std::uint32_t l = DexelField::in_tile(u, v);
   Open* open = nullptr;
   if (cut.contact) {
@@ -139,7 +146,7 @@ void TileCutter::line(const Cut& cut, std::uint32_t u, std::uint32_t v, LineSwee
           }
     }
   }
-  tile_.cut(
+  return tile_.cut(
       l, a, b, sliver_,
       [&](float lo, float hi) {
         if (times_.cut_at) mark(u, v, lo, hi, cut.move);

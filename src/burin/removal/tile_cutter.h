@@ -48,12 +48,11 @@ class TileCutter {
     std::array<float, Tile::kLines> taken{};
     std::vector<std::uint32_t> lines;
   };
-  struct Rows;
 
   bool wanted(const CutBox& box) const;
   void cut(const Cut& cut);
   Range lines(float lo, float hi, std::size_t axis, const Range& most) const;
-  void line(const Cut& cut, std::uint32_t u, std::uint32_t v, LineSweep& sweep, LineSweep* deep);
+  bool line(const Cut& cut, std::uint32_t u, std::uint32_t v, LineSweep& sweep, LineSweep* deep);
   void note(Open& open, std::uint32_t line, std::uint32_t u, std::uint32_t v, float lo, float hi);
   void mark(std::uint32_t u, std::uint32_t v, float lo, float hi, std::uint32_t move);
   void flush(Open& open);

@@ -5,11 +5,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "burin/base/parallel.h"
 #include "burin/geom/point_tools.h"
-#include "burin/verify/swept_tool.h"
+#include "burin/verify/deviation_search.h"
+#include "burin/verify/mill_walk.h"
+#include "burin/verify/sample_tile.h"
 
 namespace burin::verify {
 namespace {
@@ -21,34 +24,18 @@ using geom::Vec3;
 constexpr std::size_t kTile = 64;
 // Tiles between two reports of progress.
 constexpr std::size_t kTilesAtOnce = 4096;
+// Between the samples so much is left to find, in resolutions.
+constexpr double kGap = 2;
+// Tiles with the worst samples, and steps of the search in one of them, in one of the others, and in all of
+// those together that need more.
+constexpr std::size_t kFirst = 32;
+constexpr std::size_t kStepsFirst = 200'000;
+constexpr std::size_t kStepsTile = 4'000;
+constexpr std::size_t kStepsLeft = 20'000'000;
 // A histogram shows so many of the samples within its ends (the rest is in its outermost bins), and is never
 // narrower than this to either side, mm.
 constexpr double kUsual = 0.995;
 constexpr double kNarrowest = 1e-4;
-
-/// The tools as the index has them, and whose move a stretch is.
-struct Swept {
-  std::vector<SweptTool> tools;
-  std::vector<std::uint32_t> path;  ///< by tool: index into CheckedPath::tools
-};
-Swept swept_tools(const CheckedPath& path) {
-  Swept swept;
-  for (std::uint32_t k = 0; k < path.tools.size(); ++k) {
-    const ToolPath& tool = path.tools[k];
-    if (tool.pieces.empty()) continue;
-    std::vector<Stretch> stretches;
-    stretches.reserve(tool.pieces.size());
-    const cl::Pose* from = &tool.from;
-    for (const PathPiece& piece : tool.pieces) {
-      stretches.push_back(Stretch::between(*from, piece.to));
-      from = &piece.to;
-    }
-    swept.tools.emplace_back(bodies_of(tool.tool), std::move(stretches),
-                             static_cast<std::uint32_t>(swept.tools.size()));
-    swept.path.push_back(k);
-  }
-  return swept;
-}
 
 /// Samples that look the same way and lie near each other follow each other.
 std::vector<std::uint32_t> neighbourly_order(const std::vector<SurfaceSample>& samples) {
@@ -80,74 +67,6 @@ std::vector<std::uint32_t> neighbourly_order(const std::vector<SurfaceSample>& s
   return order;
 }
 
-/// Lowest entries of the samples of a tile: the first one and those that the stretch of their neighbour says
-/// nothing about walk through the index alone; what could be lower for the others is gathered once.
-class Tile {
- public:
-  Tile(const Swept& swept, const DeviationOptions& options) : swept_(swept), options_(options) {}
-
-  const std::vector<SampleLine>& measure(const std::vector<SurfaceSample>& samples,
-                                         const std::uint32_t* index, std::size_t count) {
-    lines_.clear();
-    open_.clear();
-    const SampleLine* hint = nullptr;
-    lines_.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const SurfaceSample& s = samples[index[i]];
-      lines_.push_back({s.p, s.n, options_.reach_mm, options_.resolution_mm, options_.reach_mm});
-      SampleLine& line = lines_.back();
-      if (hint) swept_.tools[hint->tool].lower(line, swept_.tools[hint->tool].candidate(hint->stretch, 0));
-      if (line.found()) {
-        open_.push_back(i);
-      } else {
-        for (const SweptTool& tool : swept_.tools) tool.lower(line);
-      }
-      if (line.found()) hint = &line;
-    }
-    if (!open_.empty()) finish();
-    return lines_;
-  }
-
- private:
-  void finish() {
-    const BoxExtent extent = around(open_);
-    const double touch = lines_.front().touch();
-    for (const SweptTool& tool : swept_.tools)
-      for (std::size_t b = 0; b < tool.bodies(); ++b)
-        tool.gather(b, extent, extent, touch, [&](const Candidate& c) {
-          for (const std::size_t i : open_) tool.lower(lines_[i], c);
-        });
-  }
-  /// From the samples to where their lines are entered so far.
-  BoxExtent around(const std::vector<std::size_t>& which) const {
-    Vec3 sum;
-    for (const std::size_t i : which) sum = sum + lines_[i].n;
-    const Vec3 n = norm(sum) > 0 ? unit(sum) : lines_[which[0]].n;
-    const Vec3 any = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const std::array<Vec3, 3> axes{unit(cross(n, any)), cross(n, unit(cross(n, any))), n};
-    const Point3 origin = lines_[which[0]].q;
-    geom::Box3 box;
-    for (const std::size_t i : which) {
-      const SampleLine& line = lines_[i];
-      for (const double h : {0.0, std::max(0.0, line.best)}) {
-        const Vec3 d = line.q + h * line.n - origin;
-        box.add(Point3{dot(d, axes[0]), dot(d, axes[1]), dot(d, axes[2])});
-      }
-    }
-    const Point3 m = lerp(box.lo, box.hi, 0.5);
-    const Vec3 half = 0.5 * (box.hi - box.lo);
-    return {origin + (m.x * axes[0] + m.y * axes[1] + m.z * axes[2]),
-            norm(half),
-            {n, half.z, -half.z},
-            {half.x * axes[0], half.y * axes[1], half.z * axes[2]}};
-  }
-
-  const Swept& swept_;
-  const DeviationOptions& options_;
-  std::vector<SampleLine> lines_;
-  std::vector<std::size_t> open_;
-};
-
 Error range(const std::string& what) {
   return {ErrorCode::range, what, {}};
 }
@@ -167,7 +86,7 @@ Result<void> validate(const geom::Mesh& mesh, const SampledSurface& surface) {
     if (surface.cells[i].triangle >= mesh.triangles.size())
       return geometry("sample " + std::to_string(i) + " is of a triangle that the mesh does not have");
   }
-  if (surface.samples.size() >= SampleLine::kNone) return range("too many samples (4,000,000,000 at most)");
+  if (surface.samples.size() >= Moment::kNone) return range("too many samples (4,000,000,000 at most)");
   return {};
 }
 
@@ -177,11 +96,8 @@ Result<void> validate(const CheckedPath& path, const DeviationOptions& options) 
     return range("reach and resolution must be positive");
   if (!(std::isfinite(options.tolerance_mm) && options.tolerance_mm >= 0))
     return range("the tolerance must not be negative");
-  if (auto ok = validate(path); !ok) return ok.error();
-  for (const ToolPath& tool : path.tools)
-    if (tool.pieces.size() >= SampleLine::kNone)
-      return range("too many pieces of motion (4,000,000,000 at most)");
-  return {};
+  if (path.piece_count() >= Moment::kNone) return range("too many pieces of motion (4,000,000,000 at most)");
+  return verify::validate(path);
 }
 
 class Measure {
@@ -194,47 +110,103 @@ class Measure {
     swept_ = swept_tools(path_);
     order_ = neighbourly_order(surface_.samples);
     report_.deviation_mm.resize(order_.size());
-    const std::size_t tiles = (order_.size() + kTile - 1) / kTile;
-    worst_.resize(tiles);
-    const unsigned threads = thread_count(options_.threads);
-    for (std::size_t first = 0; first < tiles; first += kTilesAtOnce) {
-      if (progress_ && !progress_->progress("deviation", double(first) / double(tiles)))
-        return Error{ErrorCode::usage, "stopped", {}};
-      parallel_for(std::min(kTilesAtOnce, tiles - first), threads,
-                   [&](std::size_t t, std::size_t) { tile(first + t); });
-    }
-    for (const Worst& w : worst_) {
-      if (w.gouge.mm > report_.gouge.mm) report_.gouge = w.gouge;
-      if (w.excess.mm > report_.excess.mm) report_.excess = w.excess;
-    }
+    moments_.resize(order_.size());
+    tiles_.resize((order_.size() + kTile - 1) / kTile);
+    std::vector<std::size_t> all(tiles_.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    if (!each("deviation", all, [&](std::size_t t) { measure(t); })) return stopped();
+    TileWorst worst;
+    const auto collect = [&] {
+      for (const TileWorst& w : tiles_) {
+        if (w.gouge.mm > worst.gouge.mm) worst.gouge = w.gouge;
+        if (w.excess.mm > worst.excess.mm) worst.excess = w.excess;
+      }
+    };
+    collect();
+    if (!search(worst, &TileWorst::gouge, "worst gouge") ||
+        !search(worst, &TileWorst::excess, "worst excess"))
+      return stopped();
+    report_.gouge = worst.gouge;
+    report_.excess = worst.excess;
+    report_.bound_mm = options_.resolution_mm + path_.motion_mm;
+    for (const TileWorst& w : tiles_)
+      report_.bound_mm =
+          std::max({report_.bound_mm, w.gouge_most - worst.gouge.mm, w.excess_most - worst.excess.mm});
     add_areas();
-    report_.bound_mm = options_.reach_mm;
     return std::move(report_);
   }
 
  private:
-  struct Worst {
-    WorstDeviation gouge, excess;
-  };
+  static Error stopped() { return {ErrorCode::usage, "stopped", {}}; }
 
-  void tile(std::size_t t) {
-    const std::size_t first = t * kTile, count = std::min(kTile, order_.size() - first);
+  template <class Do>
+  bool each(std::string_view stage, const std::vector<std::size_t>& tiles, Do&& what) {
+    for (std::size_t first = 0; first < tiles.size(); first += kTilesAtOnce) {
+      if (progress_ && !progress_->progress(stage, double(first) / double(tiles.size()))) return false;
+      parallel_for(std::min(kTilesAtOnce, tiles.size() - first), thread_count(options_.threads),
+                   [&](std::size_t t, std::size_t) { what(tiles[first + t]); });
+    }
+    return true;
+  }
+  const std::uint32_t* index(std::size_t t) const { return &order_[t * kTile]; }
+  std::size_t count(std::size_t t) const { return std::min(kTile, order_.size() - t * kTile); }
+
+  void measure(std::size_t t) {
     Tile tile(swept_, options_);
-    const std::vector<SampleLine>& lines = tile.measure(surface_.samples, &order_[first], count);
-    for (std::size_t i = 0; i < count; ++i) {
+    const std::vector<SampleLine>& lines = tile.measure(surface_.samples, index(t), count(t));
+    for (std::size_t i = 0; i < lines.size(); ++i) {
       const SampleLine& line = lines[i];
-      const std::uint32_t at = order_[first + i];
+      const std::uint32_t at = index(t)[i];
+      moments_[at] = line.at;
       report_.deviation_mm[at] =
           line.found() ? static_cast<float>(line.best) : std::numeric_limits<float>::quiet_NaN();
       if (!line.found()) continue;
-      if (-line.best > worst_[t].gouge.mm) worst_[t].gouge = worst(line, -line.best);
-      if (surface_.samples[at].machined && line.best > worst_[t].excess.mm)
-        worst_[t].excess = worst(line, line.best);
+      TileWorst& worst = tiles_[t];
+      if (-line.best > worst.gouge.mm) worst.gouge = {-line.best, line.q, line.n, swept_.move_of(line.at)};
+      if (surface_.samples[at].machined && line.best > worst.excess.mm)
+        worst.excess = {line.best, line.q, line.n, swept_.move_of(line.at)};
     }
   }
-  WorstDeviation worst(const SampleLine& line, double mm) const {
-    const ToolPath& tool = path_.tools[swept_.path[line.tool]];
-    return {mm, line.q, line.n, tool.pieces[swept_.tools[line.tool].original(line.stretch)].move};
+
+  /// The worst between the samples. First in the tiles with the worst samples, so that the others need only
+  /// be shown to have no more; those that need more steps than usual get what is left of them.
+  bool search(TileWorst& worst, WorstDeviation TileWorst::*which, std::string_view stage) {
+    const bool gouge = which == &TileWorst::gouge;
+    std::vector<std::size_t> tiles(tiles_.size());
+    std::iota(tiles.begin(), tiles.end(), std::size_t{0});
+    std::stable_sort(tiles.begin(), tiles.end(), [&](std::size_t a, std::size_t b) {
+      return (tiles_[a].*which).mm > (tiles_[b].*which).mm;
+    });
+    const std::size_t first = std::min(kFirst, tiles.size());
+    std::vector<std::size_t> head(tiles.begin(), tiles.begin() + static_cast<std::ptrdiff_t>(first));
+    std::vector<std::size_t> rest(tiles.begin() + static_cast<std::ptrdiff_t>(first), tiles.end());
+    if (!round(head, worst, which, kStepsFirst, stage) || !round(rest, worst, which, kStepsTile, stage))
+      return false;
+    std::vector<std::size_t> open;
+    for (const std::size_t t : rest)
+      if (gouge ? tiles_[t].gouge_open : tiles_[t].excess_open) open.push_back(t);
+    if (open.empty()) return true;
+    return round(open, worst, which, std::max(kStepsTile, kStepsLeft / open.size()), stage);
+  }
+  bool round(const std::vector<std::size_t>& tiles, TileWorst& worst, WorstDeviation TileWorst::*which,
+             std::size_t steps, std::string_view stage) {
+    const TileWorst known = worst;
+    const SearchLimits limits{kGap * options_.resolution_mm, path_.motion_mm, steps};
+    const bool ok = each(stage, tiles, [&](std::size_t t) {
+      TileSearch search(mesh_, surface_, swept_, options_);
+      TileWorst& mine = tiles_[t];
+      if (which == &TileWorst::gouge) {
+        const TileWorst found = search.gouge(index(t), count(t), known, limits);
+        mine.gouge = found.gouge, mine.gouge_most = found.gouge_most, mine.gouge_open = found.gouge_open;
+      } else {
+        const TileWorst found = search.excess(index(t), count(t), moments_, known, limits);
+        mine.excess = found.excess, mine.excess_most = found.excess_most,
+        mine.excess_open = found.excess_open;
+      }
+    });
+    for (const std::size_t t : tiles)
+      if ((tiles_[t].*which).mm > (worst.*which).mm) worst.*which = tiles_[t].*which;
+    return ok;
   }
 
   void add_areas() {
@@ -262,7 +234,8 @@ class Measure {
   ProgressSink* progress_;
   Swept swept_;
   std::vector<std::uint32_t> order_;
-  std::vector<Worst> worst_;
+  std::vector<Moment> moments_;  // of the samples
+  std::vector<TileWorst> tiles_;
   DeviationReport report_;
 };
 

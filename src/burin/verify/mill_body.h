@@ -71,7 +71,7 @@ inline BodyAt body_at(const MillBody& body, geom::Point3 tip, geom::Vec3 axis, g
   // From the centre of the corner, outwards and down.
   const double out = distance - (body.radius - body.corner), down = body.low + body.corner - height;
   if (out > 0 && down > 0) {
-    const double far = std::hypot(out, down);
+    const double far = std::sqrt(out * out + down * down);
     at.sides[3] = {body.corner - far, (down / far) * axis - (out / far) * outwards};
     at.count = 4;
   }

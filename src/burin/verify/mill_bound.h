@@ -18,7 +18,7 @@ struct Span {
   double middle = 0, half = 0;
   Placed at;  ///< in the middle
 
-  static Span whole(const Stretch& stretch) { return {0.5, 0.5, stretch.at(0.5)}; }
+  static Span whole(const Stretch& stretch) { return {0.5, 0.5, stretch.middle}; }
   std::array<Span, 2> halves(const Stretch& stretch) const {
     std::array<Span, 2> out;
     for (std::size_t i = 0; i < 2; ++i) {

@@ -23,14 +23,16 @@ Error wrong_move(std::size_t move, const std::string& what) {
 
 Stretch Stretch::between(const cl::Pose& a, const cl::Pose& b) {
   Stretch s;
-  s.from = {a.tip, unit(a.axis)};
   s.way = b.tip - a.tip;
-  const Vec3 to = unit(b.axis), normal = cross(s.from.axis, to);
+  const Vec3 from = unit(a.axis), to = unit(b.axis), normal = cross(from, to);
+  s.middle = {lerp(a.tip, b.tip, 0.5), from};
   const double sine = norm(normal);
   if (sine > 0) {
-    s.angle = std::atan2(sine, dot(s.from.axis, to));
-    s.turn = (s.angle / sine) * normal;
-    s.across = cross((1 / sine) * normal, s.from.axis);
+    const Vec3 about = (1 / sine) * normal;
+    s.angle = std::atan2(sine, dot(from, to));
+    s.turn = s.angle * about;
+    s.middle.axis = std::cos(0.5 * s.angle) * from + std::sin(0.5 * s.angle) * cross(about, from);
+    s.across = cross(about, s.middle.axis);
   }
   return s;
 }

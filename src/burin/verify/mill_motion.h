@@ -18,17 +18,18 @@ struct Placed {
 };
 
 struct Stretch {
-  Placed from;
+  Placed middle;
   geom::Vec3 way;     ///< of the tip
   geom::Vec3 turn;    ///< rotation vector of the axis, perpendicular to it
-  geom::Vec3 across;  ///< turn's direction x from.axis
+  geom::Vec3 across;  ///< turn's direction x middle.axis
   double angle = 0;
 
   static Stretch between(const cl::Pose& a, const cl::Pose& b);
   /// t from 0 to 1.
   Placed at(double t) const {
-    if (angle == 0) return {from.tip + t * way, from.axis};
-    return {from.tip + t * way, std::cos(t * angle) * from.axis + std::sin(t * angle) * across};
+    const double s = t - 0.5;
+    if (angle == 0) return {middle.tip + s * way, middle.axis};
+    return {middle.tip + s * way, std::cos(s * angle) * middle.axis + std::sin(s * angle) * across};
   }
 };
 

@@ -2,7 +2,6 @@
 #include "burin/verify/mill_walk.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace burin::verify {
 namespace {
@@ -37,11 +36,11 @@ Around around(const Step* begin, const Step* end, double span) {
   geom::Box3 tips;
   geom::Vec3 sum;
   const auto each_end = [&](auto&& use) {
-    for (const Step* s = begin; s != end; ++s) use(s->stretch.from), use(s->stretch.at(1));
+    for (const Step* s = begin; s != end; ++s) use(s->stretch.at(0)), use(s->stretch.at(1));
   };
   each_end([&](const Placed& p) { tips.add(p.tip), sum = sum + p.axis; });
   Around out;
-  out.mean = {lerp(tips.lo, tips.hi, 0.5), norm(sum) > 0 ? unit(sum) : begin->stretch.from.axis};
+  out.mean = {lerp(tips.lo, tips.hi, 0.5), norm(sum) > 0 ? unit(sum) : begin->stretch.middle.axis};
   double way = 0, chord = 0;
   each_end([&](const Placed& p) {
     way = std::max(way, distance(p.tip, out.mean.tip));

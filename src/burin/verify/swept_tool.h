@@ -12,6 +12,15 @@
 
 namespace burin::verify {
 
+/// When: a stretch, as the index of a tool numbers them, and its time.
+struct Moment {
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::uint32_t tool = kNone, stretch = kNone;
+  std::uint32_t body = 0;
+  float time = 0;
+  bool found() const { return stretch != kNone; }
+};
+
 /// The line q + h n of a sample and the lowest entry found so far: of the intervals of h that the tool covers
 /// at any moment, those that reach up to h >= 0 count.
 struct SampleLine {
@@ -20,12 +29,9 @@ struct SampleLine {
   double reach = 0;       ///< looked at from -reach to reach
   double resolution = 0;  ///< what may be left to find
   double best = 0;        ///< begins as reach
-  // Where and when that is; kNone: nowhere up to reach.
-  std::uint32_t tool = kNone, stretch = kNone;
-  double time = 0;
+  Moment at{};  ///< when that is; none: nowhere up to reach
 
-  static constexpr std::uint32_t kNone = 0xffffffff;
-  bool found() const { return stretch != kNone; }
+  bool found() const { return at.found(); }
   /// As if every piece were so much larger all around: what is touched to a rounding error counts as inside.
   double touch() const { return 0.01 * resolution; }
 };
@@ -50,39 +56,53 @@ class SweptTool {
   std::uint32_t original(std::uint32_t stretch) const { return order_[stretch]; }
   Candidate candidate(std::uint32_t stretch, std::uint32_t body) const;
 
-  /// Lowers the line's best by one stretch, by all.
-  void lower(SampleLine& line, const Candidate& candidate) const;
-  void lower(SampleLine& line) const;
-
-  /// Calls visit(candidate) for every stretch and body that may come into both extents, into one of them
-  /// nearer than `margin`.
-  template <class Extent, class Visit>
-  void gather(std::size_t body, const Extent& one, const Extent& other, double margin, Visit&& visit) const {
-    if (nodes_.empty()) return;
-    std::uint32_t stack[kMostDepth];
-    int depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      if (upper(bodies_[body], node, one, -margin) <= -margin ||
-          upper(bodies_[body], node, other, -margin) <= -margin)
-        continue;
-      if (node.count == 0) {
-        stack[depth++] = node.first + 1;
-        stack[depth++] = node.first;
-        continue;
-      }
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const Candidate c = candidate(i, static_cast<std::uint32_t>(body));
-        if (upper_bound(bodies_[body], *c.stretch, c.whole, one, -margin).value <= -margin ||
-            upper_bound(bodies_[body], *c.stretch, c.whole, other, -margin).value <= -margin)
-          continue;
-        visit(c);
-      }
+  /// A part of the index for one of the bodies.
+  struct Part {
+    std::uint32_t tool = 0, body = 0, node = 0;
+  };
+  /// The whole of it, for all bodies.
+  void add_all(std::vector<Part>& parts) const {
+    for (std::uint32_t b = 0; b < bodies_.size() && !nodes_.empty(); ++b) parts.push_back({number_, b, 0});
+  }
+  /// Adds to `parts` what of the part may come into both extents, or nearer than `margin`: divided until each is
+  /// no larger than the extents or one leaf.
+  template <class Extent>
+  void narrow(const Part& part, const Extent& one, const Extent& other, double margin,
+              std::vector<Part>& parts) const {
+    const Node& node = nodes_[part.node];
+    const MillBody& body = bodies_[part.body];
+    if (upper(body, node, one, -margin) <= -margin) return;
+    if (&one != &other && upper(body, node, other, -margin) <= -margin) return;
+    if (node.count > 0 || norm(node.half) + node.turn * body.radius <= one.radius) {
+      parts.push_back(part);
+      return;
     }
+    narrow({part.tool, part.body, node.first}, one, other, margin, parts);
+    narrow({part.tool, part.body, node.first + 1}, one, other, margin, parts);
   }
 
+  /// Calls visit(candidate) for every stretch of the part that may come into both extents or nearer than
+  /// `margin`.
+  template <class Extent, class Visit>
+  void gather(const Part& part, const Extent& one, const Extent& other, double margin, Visit&& visit) const {
+    const Node& node = nodes_[part.node];
+    const MillBody& body = bodies_[part.body];
+    if (upper(body, node, one, -margin) <= -margin || upper(body, node, other, -margin) <= -margin) return;
+    if (node.count == 0) {
+      gather({part.tool, part.body, node.first}, one, other, margin, visit);
+      gather({part.tool, part.body, node.first + 1}, one, other, margin, visit);
+      return;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(candidate(i, part.body));
+  }
+
+  /// Lowers the line's best by one stretch, by a part, by all.
+  void lower(SampleLine& line, const Candidate& candidate) const;
+  void lower(SampleLine& line, const Part& part) const;
+  void lower(SampleLine& line) const;
+
  private:
+  class Crossing;
   /// Stretches near each other in place and axis.
   struct Node {
     geom::Point3 tip;  ///< in the middle
@@ -91,13 +111,12 @@ class SweptTool {
     double turn = 0;                     ///< no axis leans more against `axis`
     std::uint32_t first = 0, count = 0;  ///< stretches; count 0: the first of two children
   };
-  static constexpr int kMostDepth = 128;
   static constexpr double kWidestTurn = 1;
 
   void split(std::uint32_t node, std::uint32_t begin, std::uint32_t end, std::vector<Stretch>& stretches);
   void lay(Node& node, std::uint32_t begin, std::uint32_t end, const std::vector<Stretch>& stretches) const;
+  double upper(const SampleLine& line, std::uint32_t body, std::uint32_t node) const;
   void descend(SampleLine& line, std::uint32_t body, std::uint32_t node) const;
-  void lower(SampleLine& line, const Candidate& candidate, const Span& span) const;
 
   /// No place of the extent is deeper in the body at any time of the node's stretches; only its sign says how
   /// far outside. As upper_bound, the places of the tips being one more extent and the turn a rotation by at

@@ -43,9 +43,10 @@ export function turned(f: Frame, p: number, q: number): Frame {
 
 /** What a tool sweeps of the plane while it goes straight through it: convex, known by its support. */
 export class Swept {
-  /** Of the plane's directions, brought along the way of the tool: a point x is seen at (x . U, x . V). */
-  private U: Vec; private V: Vec;
-  private constructor(readonly node: number, readonly tip: Vec, readonly axis: Vec, private way: Vec, readonly pieces: Piece[], frame: Frame) { this.U = this.V = [0, 0, 0]; this.see(frame); }
+  /** Of the plane's directions U and V, brought along the way of the tool (a point x is seen at (x . U, x . V)): the
+      products that every question needs; place of the tip. */
+  private UU = 0; private UV = 0; private VV = 0; private Ua = 0; private Va = 0; private pu = 0; private pv = 0;
+  private constructor(readonly node: number, readonly tip: Vec, readonly axis: Vec, private way: Vec, readonly pieces: Piece[], frame: Frame) { this.see(frame); }
   /** Null when the way runs so flat to the plane that nothing can be said of its profile. */
   static through(node: number, tip: Vec, axis: Vec, way: Vec, pieces: Piece[], frame: Frame): Swept | null {
     const FLATTEST = 0.2;
@@ -53,26 +54,25 @@ export class Swept {
   }
   /** The plane turned (its feed is as before). */
   see(frame: Frame): void {
-    const of = dot(this.way, frame.feed);
-    this.U = sum(frame.u, frame.feed, -dot(this.way, frame.u) / of); this.V = sum(frame.v, frame.feed, -dot(this.way, frame.v) / of);
-    this.at = sum(this.tip, frame.origin, -1);
+    const of = dot(this.way, frame.feed), at = sum(this.tip, frame.origin, -1);
+    const U = sum(frame.u, frame.feed, -dot(this.way, frame.u) / of), V = sum(frame.v, frame.feed, -dot(this.way, frame.v) / of);
+    this.UU = dot(U, U); this.UV = dot(U, V); this.VV = dot(V, V); this.Ua = dot(U, this.axis); this.Va = dot(V, this.axis);
+    this.pu = dot(at, U); this.pv = dot(at, V);
   }
-  private at: Vec = [0, 0, 0];
-  place(): [number, number] { return [dot(this.at, this.U), dot(this.at, this.V)]; }
-  axisSeen(): [number, number] { return [dot(this.axis, this.U), dot(this.axis, this.V)]; }
-  /** The outermost point in direction (p, q), as [u, v]. */
+  place(): [number, number] { return [this.pu, this.pv]; }
+  axisSeen(): [number, number] { return [this.Ua, this.Va]; }
+  /** The outermost point in direction (p, q), as [u, v]. With g = p U + q V: the largest h g.a + r |g - (g.a) a| of the profile (h, r). */
   outermost(p: number, q: number): [number, number] {
-    const g: Vec = [p * this.U[0] + q * this.V[0], p * this.U[1] + q * this.V[1], p * this.U[2] + q * this.V[2]], ga = dot(g, this.axis);
-    const r: Vec = sum(g, this.axis, -ga), gr = Math.hypot(r[0], r[1], r[2]), all = Math.hypot(ga, gr);
+    const gU = p * this.UU + q * this.UV, gV = p * this.UV + q * this.VV, gg = p * gU + q * gV, ga = p * this.Ua + q * this.Va;
+    const gr = Math.sqrt(Math.max(0, gg - ga * ga)), all = Math.sqrt(gg), down = ga < 0;
     let best = -Infinity, height = 0, radius = 0;
     for (const b of this.pieces) {
-      const down = ga < 0, corner = down && all > 0 ? b.corner : 0;
-      const h = down ? b.low + b.corner + (corner > 0 ? corner * ga / all : -b.corner) : b.high, w = down ? b.radius - corner + (corner > 0 ? corner * gr / all : 0) : b.radius;
-      const s = h * ga + w * gr;
+      const corner = down && all > 0 ? b.corner : 0;
+      const h = down ? b.low + (corner > 0 ? corner * (1 + ga / all) : 0) : b.high, w = b.radius - corner + (corner > 0 ? corner * gr / all : 0), s = h * ga + w * gr;
       if (s > best) { best = s; height = h; radius = w; }
     }
-    const x: Vec = gr > 1e-15 ? sum(sum(this.at, this.axis, height), r, radius / gr) : sum(this.at, this.axis, height);
-    return [dot(x, this.U), dot(x, this.V)];
+    const f = gr > 1e-15 ? radius / gr : 0;
+    return [this.pu + height * this.Ua + f * (gU - ga * this.Ua), this.pv + height * this.Va + f * (gV - ga * this.Va)];
   }
   support(p: number, q: number): number { const [u, v] = this.outermost(p, q); return p * u + q * v; }
   get left(): number { return this.outermost(-1, 0)[0]; }
@@ -158,8 +158,8 @@ export function envelope(bodies: Swept[], from: number, to: number, n: number): 
   const u = new Float64Array(n), v = new Float64Array(n).fill(Infinity), owner = new Int16Array(n).fill(-1);
   for (let i = 0; i < n; ++i) u[i] = from + (to - from) * i / Math.max(1, n - 1);
   bodies.forEach((b, k) => {
-    const l = b.left, r = b.right;
-    for (let i = 0; i < n; ++i) if (u[i] >= l && u[i] <= r) { const y = b.low(u[i]); if (y < v[i]) { v[i] = y; owner[i] = k; } }
+    const l = b.left, r = b.right, bottom = b.outermost(0, -1)[1];
+    for (let i = 0; i < n; ++i) if (u[i] >= l && u[i] <= r && bottom < v[i]) { const y = b.low(u[i]); if (y < v[i]) { v[i] = y; owner[i] = k; } }
   });
   return { u, v, owner };
 }

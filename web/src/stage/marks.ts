@@ -127,7 +127,7 @@ export class Ground {
       uniforms: { colour: { value: new Color() }, cell: { value: 10 }, base: { value: new Vector3(...center) }, middle: { value: c }, reach: { value: reach / 2 }, strength: { value: 1 } },
       vertexShader: "out vec2 vAt; void main() { vec4 p = modelMatrix * vec4(position, 1.0); vAt = p.xy; gl_Position = projectionMatrix * viewMatrix * p; }",
       fragmentShader: `uniform vec3 colour, base, middle; uniform float cell, reach, strength; in vec2 vAt; out vec4 result;
-        float grid(float c) { vec2 p = (vAt + base.xy) / c, w = fwidth(p), d = abs(fract(p - 0.5) - 0.5) / max(w, 1e-6); return (1.0 - min(min(d.x, d.y), 1.0)) * (1.0 - smoothstep(0.15, 0.6, max(w.x, w.y))); }
+        float grid(float c) { vec2 p = (vAt + base.xy) / c, w = fwidth(p), d = abs(fract(p - 0.5) - 0.5) / max(w, 1e-6); return (1.0 - min(min(d.x, d.y), 1.0)) * (1.0 - smoothstep(0.03, 0.12, max(w.x, w.y))); }
         void main() {
           float far = 1.0 - smoothstep(0.35, 1.0, length(vAt - middle.xy) / reach);
           result = vec4(colour, strength * far * max(0.35 * grid(cell), 0.8 * grid(cell * 10.0)));

@@ -22,13 +22,16 @@ export function surfaceMaterial(ctx: Context, o: SurfaceOptions): ShaderMaterial
     glslVersion: GLSL3, side: o.back === false ? FrontSide : DoubleSide, transparent: opacity < 1, depthWrite: opacity >= 1,
     polygonOffset: true, polygonOffsetFactor: 1 - (o.nearer ?? 0), polygonOffsetUnits: 2 - 2 * (o.nearer ?? 0),
     uniforms: { clip: ctx.shared.clip, clipOn: o.free ? { value: 0 } : ctx.shared.clipOn, ramp: ctx.shared.ramp, pixel: ctx.shared.pixel,
-      colour: { value: o.colour }, cutColour: { value: o.colour.clone() }, opacity: { value: opacity }, heat: { value: 0 }, range: { value: 1 }, capped: { value: 0 }, shine: { value: o.shine ?? 0.14 } },
+      colour: { value: o.colour }, cutColour: { value: o.colour.clone() }, opacity: { value: opacity }, heat: { value: 0 }, range: { value: 1 }, capped: { value: 0 }, shine: { value: o.shine ?? 0.14 }, push: { value: 0 } },
     vertexShader: `
       in float value; ${o.tinted ? "in float tint; out float vTint;" : ""}
+      uniform float push; // mm away from the eye in depth only
       out vec3 vNormal; out float vValue; ${CLIP_VERTEX}
       void main() {
         vPart = position; vNormal = normalMatrix * normal; vValue = value; ${o.tinted ? "vTint = tint;" : ""}
-        gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+        vec4 seen = modelViewMatrix * vec4(position, 1.0), back = projectionMatrix * (seen - vec4(0.0, 0.0, push, 0.0));
+        gl_Position = projectionMatrix * seen;
+        if (push > 0.0) gl_Position.z = back.z / back.w * gl_Position.w;
       }`,
     fragmentShader: `
       uniform vec3 colour; uniform vec3 cutColour; uniform float opacity, heat, range, capped, pixel, shine; uniform sampler2D ramp;
@@ -39,15 +42,15 @@ export function surfaceMaterial(ctx: Context, o: SurfaceOptions): ShaderMaterial
         vec3 base = colour;
         ${o.tinted ? "base = mix(colour, cutColour, vTint);" : ""}
         if (capped > 0.5 && clipOn > 0.5 && !gl_FrontFacing) {
-          float hatch = mod(gl_FragCoord.x + gl_FragCoord.y, 7.0 * pixel) / pixel;
-          result = vec4(mix(colour * 0.92, colour * 0.62, smoothstep(1.6, 0.6, abs(hatch - 1.5))), opacity);
+          float hatch = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * pixel) / pixel;
+          result = vec4(mix(colour * 0.95, colour * 0.74, smoothstep(1.4, 0.5, abs(hatch - 1.4))), opacity);
           return;
         }
         if (heat > 0.5) base = vValue < -1e20 ? vec3(0.6, 0.62, 0.66) : texture(ramp, vec2(clamp(0.5 + 0.5 * vValue / range, 0.002, 0.998), 0.5)).rgb;
         vec3 n = normalize(vNormal);
         if (!gl_FrontFacing) n = -n;
-        const vec3 key = normalize(vec3(0.35, 0.55, 0.8)), fill = normalize(vec3(-0.7, -0.1, 0.45)), halfway = normalize(vec3(0.35, 0.55, 1.8));
-        float light = 0.46 + 0.5 * max(dot(n, key), 0.0) + 0.17 * max(dot(n, fill), 0.0);
+        const vec3 key = normalize(vec3(0.35, 0.55, 0.8)), fill = normalize(vec3(-0.6, -0.25, 0.6)), halfway = normalize(vec3(0.35, 0.55, 1.8));
+        float light = 0.5 + 0.42 * max(dot(n, key), 0.0) + 0.28 * max(dot(n, fill), 0.0);
         result = vec4(base * light + shine * pow(max(dot(n, halfway), 0.0), 30.0), opacity);
       }`,
   });

@@ -11,7 +11,7 @@ function svg(name: string, attributes: Record<string, string | number>): SVGElem
   for (const [k, v] of Object.entries(attributes)) e.setAttribute(k, String(v));
   return e;
 }
-export interface Label { text: string; x: number; y: number; strong?: boolean }
+export interface Label { text: string; x: number; y: number; strong?: boolean; free?: boolean } // free: not kept within the picture
 
 export class Overlay {
   private root = document.createElement("div");
@@ -66,7 +66,7 @@ export class Overlay {
       if (e.textContent !== l.text) e.textContent = l.text;
       e.style.fontWeight = l.strong ? "600" : "400";
       const w = this.root.clientWidth, h = this.root.clientHeight;
-      const x = Math.min(Math.max(4, l.x), Math.max(4, w - e.offsetWidth - 4)), y = Math.min(Math.max(4, l.y), Math.max(4, h - e.offsetHeight - 4));
+      const x = l.free ? l.x : Math.min(Math.max(4, l.x), Math.max(4, w - e.offsetWidth - 4)), y = l.free ? l.y : Math.min(Math.max(4, l.y), Math.max(4, h - e.offsetHeight - 4));
       e.style.transform = `translate(${Math.round(x)}px,${Math.round(y)}px)`;
       e.hidden = l.x < -50 || l.y < -50 || l.x > w + 50 || l.y > h + 50;
     });

@@ -9,6 +9,8 @@ import { lineMaterial, lines, NO_VALUE, surfaceMaterial } from "./materials";
 
 interface Body { mesh: Mesh; surface: Object; material: ShaderMaterial; edges: LineSegments | null; edgeMaterial: ShaderMaterial }
 
+/** So much of a cell of the stock's clock its surface may lie within the part. */
+const BURIED = 0.8;
 const STOCK_OPACITY = 0.16, OBSTACLE_OPACITY = 0.5;
 
 export class Part {
@@ -53,11 +55,12 @@ export class Part {
     }
   }
   update(): void {
-    const s = this.ctx.store.state, clocked = this.ctx.scene.stock !== null;
+    const s = this.ctx.store.state, { stock } = this.ctx.scene, clocked = stock !== null;
     for (const b of this.bodies) {
       const { role } = b.mesh;
-      b.surface.visible = role === Role.design ? s.show.part : role === Role.obstacle ? s.show.obstacles : s.show.stock && !(clocked && role === Role.result);
+      b.surface.visible = role === Role.design ? s.show.part : role === Role.obstacle ? s.show.obstacles : s.show.stock && !clocked;
       b.material.uniforms["heat"]!.value = s.heat && b.mesh.value ? 1 : 0;
+      b.material.uniforms["push"]!.value = role === Role.design && s.show.stock && stock ? BURIED * stock.step : 0;
       b.material.uniforms["range"]!.value = heatRange(b.mesh, s.heatRange);
     }
   }

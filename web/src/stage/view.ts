@@ -20,10 +20,11 @@ export class View {
   private now: Place;
   private aspect = 1;
   private height = 1;
+  private touched = false; // by the user; until then a new size fits anew
   readonly right = new Vector3(); readonly up = new Vector3(); readonly back = new Vector3();
 
   /** `all` is what must not be cut off by the near and far planes; `shown` is what fit() shows. */
-  constructor(private all: Box3, private shown: Box3, readonly flat: boolean) {
+  constructor(private all: Box3, public shown: Box3, readonly flat: boolean) {
     const c = shown.getCenter(new Vector3());
     this.goal = { target: c.clone(), yaw: 0, pitch: 0, span: 1 };
     this.now = { target: c.clone(), yaw: 0, pitch: 0, span: 1 };
@@ -34,7 +35,7 @@ export class View {
   get pixel(): number { return this.now.span / this.height; }
   get isPerspective(): boolean { return this.camera === this.perspective; }
   setPerspective(on: boolean): void { this.camera = on ? this.perspective : this.orthographic; this.place(); }
-  resize(width: number, height: number): void { this.aspect = Math.max(0.01, width / Math.max(1, height)); this.height = Math.max(1, height); this.place(); }
+  resize(width: number, height: number): void { this.aspect = Math.max(0.01, width / Math.max(1, height)); this.height = Math.max(1, height); if (this.touched) this.place(); else { this.fit(); this.jump(); } }
 
   private basis(p: Place): void {
     const cy = Math.cos(p.yaw), sy = Math.sin(p.yaw), cp = Math.cos(p.pitch), sp = Math.sin(p.pitch);
@@ -78,12 +79,14 @@ export class View {
   jump(): void { const { goal: g, now: n } = this; n.target.copy(g.target); n.yaw = g.yaw; n.pitch = g.pitch; n.span = g.span; this.place(); }
 
   orbit(dx: number, dy: number): void {
+    this.touched = true;
     const speed = Math.PI / Math.max(300, this.height) * 1.2;
     this.goal.yaw -= dx * speed;
     this.goal.pitch = Math.min(Math.PI / 2, Math.max(-Math.PI / 2, this.goal.pitch + dy * speed));
   }
   /** By CSS pixels. */
   pan(dx: number, dy: number): void {
+    this.touched = true;
     this.basis(this.goal);
     const k = this.goal.span / this.height;
     this.goal.target.addScaledVector(this.right, -dx * k).addScaledVector(this.up, dy * k);
@@ -91,6 +94,7 @@ export class View {
   }
   /** The place under the cursor (-1..1 each way) stays there. */
   zoom(factor: number, x = 0, y = 0): void {
+    this.touched = true;
     const g = this.goal, most = this.all.getBoundingSphere(sphere).radius * 40 + 1, least = 1e-3;
     const span = Math.min(most, Math.max(least, g.span * factor)), f = 1 - span / g.span;
     this.basis(g);
@@ -123,6 +127,7 @@ export class View {
     this.fit();
   }
   fit(box: Box3 = this.shown): void {
+    this.touched = false;
     this.basis(this.goal);
     let w = 0, h = 0;
     const c = box.getCenter(new Vector3());
@@ -136,6 +141,7 @@ export class View {
   }
   /** So that `span` mm about the place are seen. */
   moveTo(at: Vector3, span: number): void {
+    this.touched = true;
     this.goal.target.copy(at);
     if (span > 0) this.goal.span = span / Math.min(1, this.aspect);
   }
