@@ -90,7 +90,7 @@ class Reader {
     in_.program = std::move(file->program);
     in_.program_is_nc = file->is_nc;
     in_.joints = std::move(file->joints);
-    tip_straight_ = std::move(file->tip_straight);
+    in_.tip_straight = std::move(file->tip_straight);
     moving_.unknown = std::move(file->unknown);
     design_.described.merge(file->described);
     in_.program_text = std::move(*text);
@@ -105,7 +105,7 @@ class Reader {
                      std::move(design_.described), box.diagonal(), diagnostics_);
     tools.program(in_.program);
     const verify::ToolSource source = [&tools](const cl::ToolChange& change) { return tools(change); };
-    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, tip_straight_,
+    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, in_.tip_straight,
                                                                 *in_.machine, source, moving_)
                 : as_joints()       ? posted(source)
                                     : verify::make_checked_path(in_.program, source, moving_);
@@ -206,7 +206,6 @@ class Reader {
   Diagnostics& diagnostics_;
   VerifyDesign design_;
   VerifyInput in_;
-  std::vector<bool> tip_straight_;
   verify::PathOptions moving_;
 };
 

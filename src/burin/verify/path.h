@@ -49,6 +49,10 @@ struct CheckedPath {
   std::size_t piece_count() const;
 };
 
+/// What every check asks of a path: tools as check_mill takes them, numbers that are numbers (range); poses
+/// that are finite with unit axes, turns that a great circle decides (geometry; names the move).
+Result<void> validate(const CheckedPath& path);
+
 struct PathOptions {
   double motion_mm = 0.0005;
   std::size_t max_pieces = 20'000'000;
