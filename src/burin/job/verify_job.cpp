@@ -35,7 +35,6 @@ class Reader {
     if (auto ok = stock(); !ok) return ok.error();
     in_.operation = design_.operation;
     in_.obstacles = std::move(design_.obstacles);
-    in_.machined = std::move(design_.machined);
     in_.deflection_mm = design_.deflection_mm;
     in_.tolerance_mm = *design_.tolerance_mm;
     in_.design = std::move(design_.design);
@@ -92,6 +91,7 @@ class Reader {
     in_.program_is_nc = file->is_nc;
     in_.joints = std::move(file->joints);
     in_.tip_straight = std::move(file->tip_straight);
+    moving_.unknown = std::move(file->unknown);
     design_.described.merge(file->described);
     in_.program_text = std::move(*text);
     return {};
@@ -106,9 +106,9 @@ class Reader {
     tools.program(in_.program);
     const verify::ToolSource source = [&tools](const cl::ToolChange& change) { return tools(change); };
     auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, in_.tip_straight,
-                                                                *in_.machine, source, {})
+                                                                *in_.machine, source, moving_)
                 : as_joints()       ? posted(source)
-                                    : verify::make_checked_path(in_.program, source, {});
+                                    : verify::make_checked_path(in_.program, source, moving_);
     if (!path) {
       Error error = path.error();
       if (error.where.line > 0) error.where.file = options_.path;
@@ -155,7 +155,7 @@ class Reader {
       origins.push_back(
           {r, line == cl::Program::kNoSource ? 0 : line, std::holds_alternative<cl::Rapid>(record)});
     }
-    auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, {});
+    auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, moving_);
     in_.joints.clear();  // they do not belong to the motions of the program one by one
     if (!path) return path;
     for (verify::ToolPath& tool : path->tools)
@@ -206,6 +206,7 @@ class Reader {
   Diagnostics& diagnostics_;
   VerifyDesign design_;
   VerifyInput in_;
+  verify::PathOptions moving_;
 };
 
 // --- running
