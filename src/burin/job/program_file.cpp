@@ -81,7 +81,7 @@ Result<ProgramFile> read_program(std::string_view text, const std::string& file_
   ProgramFile file;
   const FileKind kind = kind_of_file(text, file_name);
   if (kind == FileKind::nc) {
-    if (auto ok = read_nc(text, file_name, machine, file, diagnostics); !ok) return ok.error();
+    if (auto ok = read_nc(text, file_name, machine, beam, file, diagnostics); !ok) return ok.error();
   } else if (kind == FileKind::cl) {
     auto program = cl::read_apt(text, {.file_name = file_name}, diagnostics);
     if (!program) return program.error();
