@@ -99,6 +99,7 @@ void add_inputs(CLI::App& app, VerifyArgs& args) {
              "of the stock (default: 1/200 of its longest side)");
   add_number(app, "--kerf", o.kerf_mm, kPositiveLength, "laser: width of the cut");
   add_layers(app, args.layers);
+  add_drawing(app, o.laser.side, o.laser.units, o.laser.join_mm);
 }
 
 }  // namespace

@@ -55,12 +55,15 @@ class Reader {
     if (!program) return program.error();
     in_.operation = "laser";
     in_.outlines = std::move(outlines->outlines);
+    in_.outline_names = std::move(outlines->names);
     in_.deflection_mm = outlines->bound_mm;
     in_.kerf_mm = *options_.kerf_mm;
     in_.tolerance_mm = options_.tolerance_mm.value_or(in_.tolerance_mm);
     in_.program = std::move(*program);
     in_.program_is_nc = kind_of_file(*text, options_.path) == FileKind::nc;
     in_.program_text = std::move(*text);
+    for (std::uint32_t r = 0; r < in_.program.records.size(); ++r)
+      if (cl::is_motion(in_.program.records[r])) in_.path.moves.push_back(origin_of(r));
     return std::move(in_);
   }
 
@@ -125,6 +128,12 @@ class Reader {
            (options_.joints || design_.operation == "rotary");
   }
 
+  verify::MoveOrigin origin_of(std::uint32_t record) const {
+    const std::uint32_t line = in_.program.source[record];
+    return {record, line == cl::Program::kNoSource ? 0 : line,
+            std::holds_alternative<cl::Rapid>(in_.program.records[record])};
+  }
+
   /// The moves as a control without tool-centre-point control gets them; what is found is said of the CL
   /// data.
   Result<verify::CheckedPath> posted(const verify::ToolSource& source) {
@@ -151,9 +160,7 @@ class Reader {
         in_.joints.push_back(moves[next].to);
         move_of.push_back(static_cast<std::uint32_t>(origins.size()));
       }
-      const std::uint32_t line = in_.program.source[r];
-      origins.push_back(
-          {r, line == cl::Program::kNoSource ? 0 : line, std::holds_alternative<cl::Rapid>(record)});
+      origins.push_back(origin_of(r));
     }
     auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, moving_);
     in_.joints.clear();  // they do not belong to the motions of the program one by one
