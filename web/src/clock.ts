@@ -4,7 +4,7 @@ import type { Scene } from "./scene";
 import type { Store } from "./state";
 
 /** Longest step of a frame, s: a page that slept does not leap. */
-const LONGEST_FRAME = 0.1;
+const LONGEST_FRAME = 0.5;
 
 /** The last node whose time is not after t. */
 export function nodeAt(time: Float64Array, t: number): number {

@@ -217,7 +217,7 @@ function clock(path, r, block, grid) {
       if (next[c] >= count[c]) continue;
       const m = at(...next), empties = (cut[n] === 0) !== (cut[m] === 0), final = (cut[n] === 0xffffffff) !== (cut[m] === 0xffffffff);
       const d0 = empties ? inside(i, j, k) : distance[n], d1 = empties ? inside(...next) : distance[m];
-      if ((empties || final) && d0 * d1 < 0) crossing[3 * n + c] = share(d0 / (d0 - d1));
+      if ((empties || final) && d0 * d1 <= 0 && d0 !== d1) crossing[3 * n + c] = share(d0 / (d0 - d1));
     }
   }
   return { count, origin, step, cut, crossing };

@@ -14,15 +14,6 @@
 
 namespace burin::job {
 
-enum class ProgramKind {
-  cl,          ///< APT words with '/'
-  nc,          ///< words of a letter and a number
-  heidenhain,  ///< conversational: a dialect of its own
-  unknown,
-};
-/// By the first lines that say something.
-ProgramKind kind_of_program(std::string_view text);
-
 struct ProgramFile {
   cl::Program program;
   bool is_nc = false;

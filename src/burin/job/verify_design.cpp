@@ -6,10 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include "burin/base/text.h"
 #include "burin/io/stl/stl.h"
 #include "burin/job/face_mesh.h"
-#include "burin/job/program_file.h"
+#include "burin/job/file_kind.h"
 #include "burin/job/verify_tools.h"
 #include "burin/nc/surface_program.h"
 
@@ -145,22 +144,6 @@ Result<void> load_surfaces(const std::string& text, const std::string& path, Ver
   return {};
 }
 
-// --- by content
-
-enum class DesignKind { job, cad, stl, surfaces };
-
-DesignKind kind_of_design(const std::string& path, std::string_view bytes) {
-  const std::string extension = to_lower(fs::path(path).extension().string());
-  if (extension == ".toml") return DesignKind::job;
-  if (extension == ".stl") return DesignKind::stl;
-  for (const char* cad : {".step", ".stp", ".iges", ".igs"})
-    if (extension == cad) return DesignKind::cad;
-  const std::string_view head = trim(bytes.substr(0, std::min<std::size_t>(bytes.size(), 4096)));
-  if (head.starts_with("ISO-10303-21")) return DesignKind::cad;
-  if (head.starts_with("solid") || bytes.find('\0') != std::string_view::npos) return DesignKind::stl;
-  return DesignKind::surfaces;
-}
-
 }  // namespace
 
 Result<Mesh> load_stl(const std::string& path, const FileSource& read, Diagnostics& diagnostics) {
@@ -182,17 +165,19 @@ Result<VerifyDesign> load_verify_design(const std::string& path, std::optional<d
     return file == (fs::path(out.folder) / name).string() ? *bytes : read(file);
   };
   Result<void> loaded;
-  switch (kind_of_design(path, *bytes)) {
-    case DesignKind::job:
+  const FileKind kind = kind_of_file(*bytes, path);
+  switch (kind) {
+    case FileKind::job:
       loaded = load_job(*bytes, path, read, out, diagnostics);
       break;
-    case DesignKind::surfaces:
+    case FileKind::nc:
       loaded = load_surfaces(*bytes, path, out, diagnostics);
       break;
-    case DesignKind::cad:
-    case DesignKind::stl: {
+    case FileKind::step:
+    case FileKind::iges:
+    case FileKind::stl: {
       OrientJobFile job;
-      if (kind_of_design(path, *bytes) == DesignKind::stl)
+      if (kind == FileKind::stl)
         job.part = OrientMesh{name, false};
       else
         job.part = OrientSurface{name, {}, false};
@@ -200,6 +185,11 @@ Result<VerifyDesign> load_verify_design(const std::string& path, std::optional<d
       loaded = load_faces(std::move(job), once, out, diagnostics);
       break;
     }
+    default:
+      loaded = Error{ErrorCode::syntax,
+                     "no design but " + std::string(describe(kind)) +
+                         " (a job file, STEP, IGES, STL, a surface program; DXF or SVG with --kerf)",
+                     {}};
   }
   if (!loaded) {
     Error error = loaded.error();

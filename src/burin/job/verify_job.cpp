@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "burin/base/text.h"
+#include "burin/job/file_kind.h"
 #include "burin/job/machine_file.h"
 #include "burin/job/program_file.h"
 #include "burin/job/verify_design.h"
@@ -59,7 +60,7 @@ class Reader {
     in_.kerf_mm = *options_.kerf_mm;
     in_.tolerance_mm = options_.tolerance_mm.value_or(in_.tolerance_mm);
     in_.program = std::move(*program);
-    in_.program_is_nc = kind_of_program(*text) == ProgramKind::nc;
+    in_.program_is_nc = kind_of_file(*text, options_.path) == FileKind::nc;
     in_.program_text = std::move(*text);
     return std::move(in_);
   }
@@ -90,7 +91,7 @@ class Reader {
     in_.program = std::move(file->program);
     in_.program_is_nc = file->is_nc;
     in_.joints = std::move(file->joints);
-    tip_straight_ = std::move(file->tip_straight);
+    in_.tip_straight = std::move(file->tip_straight);
     design_.described.merge(file->described);
     in_.program_text = std::move(*text);
     return {};
@@ -104,7 +105,7 @@ class Reader {
                      std::move(design_.described), box.diagonal(), diagnostics_);
     tools.program(in_.program);
     const verify::ToolSource source = [&tools](const cl::ToolChange& change) { return tools(change); };
-    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, tip_straight_,
+    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, in_.tip_straight,
                                                                 *in_.machine, source, {})
                 : as_joints()       ? posted(source)
                                     : verify::make_checked_path(in_.program, source, {});
@@ -205,7 +206,6 @@ class Reader {
   Diagnostics& diagnostics_;
   VerifyDesign design_;
   VerifyInput in_;
-  std::vector<bool> tip_straight_;
 };
 
 // --- running

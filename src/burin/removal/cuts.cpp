@@ -76,10 +76,11 @@ Result<void> validate(const verify::CheckedPath& path) {
     for (const verify::PathPiece& piece : tool.pieces) {
       if (auto ok = check(piece.to, piece.move); !ok) return ok.error();
       if (dot(from->axis, piece.to.axis) < 0 && norm(cross(from->axis, piece.to.axis)) < kOpposite)
-        return Error{ErrorCode::geometry,
-                     "move " + std::to_string(piece.move) +
-                         ": the axis turns by half a turn, which no great circle decides (put a pose between)",
-                     {}};
+        return Error{
+            ErrorCode::geometry,
+            "move " + std::to_string(piece.move) +
+                ": the axis turns by half a turn, which no great circle decides (put a pose between)",
+            {}};
       from = &piece.to;
     }
   }
@@ -155,16 +156,19 @@ void CutSource::add(std::vector<Cut>& out, const Motion& motion, const verify::P
       box.add(box_of(p.body, {motion.tip + t * motion.way, axis}));
     }
     // What a turning axis leaves between its ends, and rounding to single precision.
-    box = box.grown((motion.turns ? tolerance_ : 0) + 1e-6 * std::max({grid_.length(0), grid_.length(1), grid_.length(2)}));
+    box = box.grown((motion.turns ? tolerance_ : 0) +
+                    1e-6 * std::max({grid_.length(0), grid_.length(1), grid_.length(2)}));
     Cut cut{motion, {}, p.body, p.kind, piece.rapid || p.kind != Body::cutter, piece.move, 0};
     bool reaches = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double lo = std::max(component(box.lo, i), 0.0), hi = std::min(component(box.hi, i), grid_.length(i));
+      const double lo = std::max(component(box.lo, i), 0.0),
+                   hi = std::min(component(box.hi, i), grid_.length(i));
       reaches = reaches && lo < hi;
       cut.box.lo[i] = static_cast<float>(lo), cut.box.hi[i] = static_cast<float>(hi);
     }
     if (!reaches) continue;
-    cut.reach = std::min(reach(cut), std::hypot(p.body.radius, std::max(std::abs(p.body.low), std::abs(p.body.high))));
+    cut.reach = std::min(reach(cut),
+                         std::hypot(p.body.radius, std::max(std::abs(p.body.low), std::abs(p.body.high))));
     out.push_back(cut);
   }
 }

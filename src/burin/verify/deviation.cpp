@@ -104,7 +104,12 @@ class Measure {
  public:
   Measure(const geom::Mesh& mesh, const SampledSurface& surface, const CheckedPath& path,
           const DeviationOptions& options, ProgressSink* progress)
-      : mesh_(mesh), surface_(surface), path_(path), options_(options), progress_(progress) {}
+      : mesh_(mesh),
+        surface_(surface),
+        path_(path),
+        options_(options),
+        progress_(progress),
+        inscribed_(mesh) {}
 
   Result<DeviationReport> run() {
     swept_ = swept_tools(path_);
@@ -155,7 +160,8 @@ class Measure {
     Tile tile(swept_, options_);
     const std::vector<SampleLine>& lines = tile.measure(surface_.samples, index(t), count(t));
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const SampleLine& line = lines[i];
+      SampleLine line = lines[i];
+      line.best = -inscribed_.own(line.q, line.n, -line.best, options_.resolution_mm);
       const std::uint32_t at = index(t)[i];
       moments_[at] = line.at;
       report_.deviation_mm[at] =
@@ -193,7 +199,7 @@ class Measure {
     const TileWorst known = worst;
     const SearchLimits limits{kGap * options_.resolution_mm, path_.motion_mm, steps};
     const bool ok = each(stage, tiles, [&](std::size_t t) {
-      TileSearch search(mesh_, surface_, swept_, options_);
+      TileSearch search(mesh_, surface_, swept_, inscribed_, options_);
       TileWorst& mine = tiles_[t];
       if (which == &TileWorst::gouge) {
         const TileWorst found = search.gouge(index(t), count(t), known, limits);
@@ -232,6 +238,7 @@ class Measure {
   const CheckedPath& path_;
   const DeviationOptions& options_;
   ProgressSink* progress_;
+  Inscribed inscribed_;
   Swept swept_;
   std::vector<std::uint32_t> order_;
   std::vector<Moment> moments_;  // of the samples
