@@ -118,6 +118,7 @@ Result<cl::Program> interpret(std::string_view text, const InterpretOptions& opt
 struct JointProgram {
   cl::Program program;
   std::vector<kinematics::Joints> joints;
+  std::vector<bool> tip_straight;  ///< of each motion: under G43.4
 };
 /// Precondition: options.machine.
 Result<JointProgram> interpret_joints(std::string_view text, const InterpretOptions& options,

@@ -134,7 +134,7 @@ std::vector<Cut> CutSource::next(std::size_t most) {
     const verify::PathPiece& piece = tool.pieces[piece_];
     const cl::Pose& from = piece_ == 0 ? tool.from : tool.pieces[piece_ - 1].to;
     verify::Stretch stretch = verify::Stretch::between(from, piece.to);
-    stretch.from.tip = Point3{} + (stretch.from.tip - grid_.origin);
+    stretch.middle.tip = Point3{} + (stretch.middle.tip - grid_.origin);
     const int parts = Motion::parts(stretch, span_, 0.5 * tolerance_);
     for (int k = 0; k < parts; ++k)
       add(out, Motion::part(stretch, static_cast<double>(k) / parts, static_cast<double>(k + 1) / parts),

@@ -83,7 +83,7 @@ void compare(unsigned seed, double turn, double tolerance, double slack, int cou
     const Case c = cases.next(turn);
     const double span = std::hypot(c.body.radius, c.body.high);
     const int parts = Motion::parts(c.stretch, span, tolerance);
-    const Point3 near = c.stretch.at(cases.in(0, 1)).tip + cases.in(0, 12) * c.stretch.from.axis;
+    const Point3 near = c.stretch.at(cases.in(0, 1)).tip + cases.in(0, 12) * c.stretch.middle.axis;
     const double u = geom::component(near, (c.along + 1) % 3) + cases.in(-4, 4),
                  v = geom::component(near, (c.along + 2) % 3) + cases.in(-4, 4);
     std::vector<Covered> covered;

@@ -30,9 +30,17 @@ struct SurfaceSample {
   float area_mm2 = 0;  ///< of the surface it stands for
   bool machined = true;
 };
+/// The part of a triangle that a sample stands for (in the middle of it): what halving the longest side again
+/// and again gives. `path`: a 1, then for each halving which half.
+struct SurfaceCell {
+  std::uint32_t triangle = 0;
+  std::uint64_t path = 1;
+};
 struct SampledSurface {
   std::vector<SurfaceSample> samples;
   double spacing_mm = 0;  ///< no place of a triangle is farther than spacing / sqrt(2) from a sample of it
+  std::vector<SurfaceCell> cells;   ///< of the samples
+  std::vector<geom::Vec3> normals;  ///< a vertex of the mesh; empty: of the triangles
 };
 
 struct SampleOptions {
@@ -77,7 +85,8 @@ Result<DeviationReport> measure_deviation(const geom::Mesh& mesh, const SampledS
                                           const CheckedPath& path, const DeviationOptions& options,
                                           ProgressSink* progress = nullptr);
 
-/// Area by deviation, from -reach to +reach: equal steps of `step_mm` around 0.
+/// Area by deviation: equal steps of `step_mm`, as far to both sides of 0 as nearly all samples go; the rest
+/// is in the outermost bins.
 struct Histogram {
   double step_mm = 0;
   double from_mm = 0;  ///< lower end of the first bin

@@ -14,8 +14,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "burin/geom/vec.h"
+#include "burin/verify/mill_check.h"
 
 namespace burin::verify {
 
@@ -24,6 +26,10 @@ namespace burin::verify {
 struct MillBody {
   double radius = 0, low = 0, high = 0, corner = 0;
 
+  /// No place of it is farther from the tip.
+  double span() const { return std::hypot(radius, std::max(std::abs(low), std::abs(high))); }
+  /// No place is deeper in it.
+  double inside() const { return std::min(radius, 0.5 * (high - low)); }
   /// How far the piece reaches along the unit vector `m`, seen from the tip. No place is deeper in the piece
   /// than below the plane there: f(q) <= reach(m) - m . (q - tip) wherever f > 0.
   double reach(geom::Vec3 axis, geom::Vec3 m) const {
@@ -31,6 +37,13 @@ struct MillBody {
     return up < 0 ? (radius - corner) * aside + corner + up * (low + corner) : radius * aside + up * high;
   }
 };
+
+/// The cutter, then its cylinders.
+inline std::vector<MillBody> bodies_of(const CheckedMill& tool) {
+  std::vector<MillBody> out{{tool.radius, 0, tool.length, tool.corner_radius}};
+  for (const ToolCylinder& c : tool.cylinders) out.push_back({c.radius, c.from, c.to, 0});
+  return out;
+}
 
 /// One of the functions at a place.
 struct BodySide {
@@ -58,7 +71,7 @@ inline BodyAt body_at(const MillBody& body, geom::Point3 tip, geom::Vec3 axis, g
   // From the centre of the corner, outwards and down.
   const double out = distance - (body.radius - body.corner), down = body.low + body.corner - height;
   if (out > 0 && down > 0) {
-    const double far = std::hypot(out, down);
+    const double far = std::sqrt(out * out + down * down);
     at.sides[3] = {body.corner - far, (down / far) * axis - (out / far) * outwards};
     at.count = 4;
   }

@@ -10,7 +10,8 @@
 #include "burin/geom/point_tools.h"
 #include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
-#include "burin/verify/cutter_sweep.h"
+#include "burin/verify/mill_search.h"
+#include "burin/verify/swept_tool.h"
 
 namespace burin::verify {
 namespace {
@@ -31,7 +32,6 @@ struct Crossing {
   std::size_t pass = 0;
   Point3 from, to;
   bool square = false;
-  std::size_t from_stretch = 0, to_stretch = 0;
 };
 struct Height {
   double mm = 0;
@@ -42,27 +42,17 @@ struct Crossed {
   std::size_t samples = 0;
 };
 
-/// All passes as one list of stretches; those of a run one after the other.
-struct Motion {
+std::vector<Stretch> stretches_of(const std::vector<StripPass>& passes) {
   std::vector<Stretch> stretches;
-  std::vector<std::vector<std::size_t>> first;  ///< by pass and run: of the run's first stretch
-};
-
-Motion motion_of(const std::vector<StripPass>& passes) {
-  Motion m;
-  for (const StripPass& pass : passes) {
-    m.first.emplace_back();
-    for (const auto& run : pass.runs) {
-      m.first.back().push_back(m.stretches.size());
+  for (const StripPass& pass : passes)
+    for (const auto& run : pass.runs)
       for (std::size_t i = 0; i + 1 < run.size(); ++i)
-        m.stretches.push_back(Stretch::between(run[i].pose, run[i + 1].pose));
-    }
-  }
-  return m;
+        stretches.push_back(Stretch::between(run[i].pose, run[i + 1].pose));
+  return stretches;
 }
 
 /// The nearest place of a pass, nothing to cross to when it has no length.
-void cross_to(const StripPass& pass, const std::vector<std::size_t>& first, Vec3 along, Crossing& c) {
+void cross_to(const StripPass& pass, Vec3 along, Crossing& c) {
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < pass.runs.size(); ++r)
     for (std::size_t i = 0; i + 1 < pass.runs[r].size(); ++i) {
@@ -71,13 +61,11 @@ void cross_to(const StripPass& pass, const std::vector<std::size_t>& first, Vec3
       if (far >= least) continue;
       least = far;
       c.to = p;
-      c.to_stretch = first[r] + i;
       c.square = std::abs(dot(p - c.from, along)) <= kSquare * far;
     }
 }
 
-std::vector<Crossing> crossings(const std::vector<StripPass>& passes, const Motion& motion,
-                                std::size_t most) {
+std::vector<Crossing> crossings(const std::vector<StripPass>& passes, std::size_t most) {
   std::size_t all = 0;
   for (const StripPass& pass : passes)
     for (const auto& run : pass.runs) all += run.size();
@@ -89,8 +77,8 @@ std::vector<Crossing> crossings(const std::vector<StripPass>& passes, const Moti
     for (std::size_t r = 0; any && r < passes[p].runs.size(); ++r) {
       const auto& run = passes[p].runs[r];
       for (std::size_t i = 0; i + 1 < run.size(); i += every) {
-        Crossing c{p, run[i].contact, {}, false, motion.first[p][r] + i, 0};
-        cross_to(passes[p + 1], motion.first[p + 1], unit(run[i + 1].contact - run[i].contact), c);
+        Crossing c{p, run[i].contact, {}, false};
+        cross_to(passes[p + 1], unit(run[i + 1].contact - run[i].contact), c);
         out.push_back(c);
       }
     }
@@ -100,14 +88,13 @@ std::vector<Crossing> crossings(const std::vector<StripPass>& passes, const Moti
 
 class Across {
  public:
-  Across(const geom::NurbsSurface& surface, const CutterSweep& sweep, const StripOptions& options)
-      : surface_(surface), evaluator_(surface), finder_(surface), sweep_(sweep), options_(options) {}
+  Across(const geom::NurbsSurface& surface, const SweptTool& swept, const StripOptions& options)
+      : surface_(surface), evaluator_(surface), finder_(surface), swept_(swept), options_(options) {}
 
   Crossed along(const Crossing& c) {
     crossed_ = {
         {-std::numeric_limits<double>::infinity(), {}}, {std::numeric_limits<double>::infinity(), {}}, 0};
     const geom::SurfacePoint a = finder_.find(c.from, kFoot), b = finder_.find(c.to, kFoot);
-    hints_ = {c.from_stretch, c.to_stretch};
     const auto at = [&](double x) { return height(a.u + x * (b.u - a.u), a.v + x * (b.v - a.v)); };
     int best = 0;
     double most = -std::numeric_limits<double>::infinity();
@@ -138,7 +125,9 @@ class Across {
     if (n == Vec3{}) n = geom::normal(surface_, u, v);  // a pole
     if (!(norm(n) > 0.5)) return 0;                     // no area around: nothing stands there
     if (options_.normal_reversed) n = -n;
-    const double h = sweep_.entry(d.p, n, options_.window_mm, options_.resolution_mm, hints_);
+    SampleLine line{d.p, n, options_.window_mm, options_.resolution_mm, options_.window_mm};
+    swept_.lower(line);
+    const double h = line.best;
     ++crossed_.samples;
     if (h > crossed_.highest.mm) crossed_.highest = {h, d.p};
     if (h < crossed_.lowest.mm) crossed_.lowest = {h, d.p};
@@ -148,9 +137,8 @@ class Across {
   const geom::NurbsSurface& surface_;
   geom::SurfaceEvaluator evaluator_;
   geom::ClosestPointFinder finder_;
-  const CutterSweep& sweep_;
+  const SweptTool& swept_;
   const StripOptions& options_;
-  std::vector<std::size_t> hints_;
   Crossed crossed_;
 };
 
@@ -167,13 +155,14 @@ Result<void> validate(const std::vector<StripPass>& passes, const StripOptions& 
 
 /// Tool and poses as check_mill takes them.
 Result<void> validate(const std::vector<StripPass>& passes, const CheckedMill& tool) {
-  const geom::Mesh nothing;
+  if (auto ok = validate(tool); !ok) return ok.error();
   for (const StripPass& pass : passes)
-    for (const auto& run : pass.runs) {
-      PoseMotion poses;
-      for (const StripStation& s : run) poses.push_back(s.pose);
-      if (auto ok = check_mill(nothing, tool, poses); !ok) return ok.error();
-    }
+    for (const auto& run : pass.runs)
+      for (std::size_t i = 0; i < run.size(); ++i) {
+        if (auto ok = validate_pose(run[i].pose, i); !ok) return ok.error();
+        if (i == 0) continue;
+        if (auto ok = validate_turn(run[i - 1].pose, run[i].pose, i); !ok) return ok.error();
+      }
   return {};
 }
 
@@ -184,13 +173,12 @@ Result<StripReport> measure_strips(const geom::NurbsSurface& surface, const std:
   if (auto ok = geom::validate(surface); !ok) return ok.error();
   if (auto ok = validate(passes, options); !ok) return ok.error();
   if (auto ok = validate(passes, tool); !ok) return ok.error();
-  Motion motion = motion_of(passes);
-  const std::vector<Crossing> all = crossings(passes, motion, options.max_stations);
-  const CutterSweep sweep({tool.radius, 0, tool.length, tool.corner_radius}, std::move(motion.stretches));
+  const std::vector<Crossing> all = crossings(passes, options.max_stations);
+  const SweptTool swept({bodies_of(tool).front()}, stretches_of(passes));
 
   const unsigned threads = thread_count(options.threads);
   std::vector<Across> across;
-  for (unsigned i = 0; i < threads; ++i) across.emplace_back(surface, sweep, options);
+  for (unsigned i = 0; i < threads; ++i) across.emplace_back(surface, swept, options);
   std::vector<Crossed> found(all.size());
   parallel_for(all.size(), threads,
                [&](std::size_t i, std::size_t worker) { found[i] = across[worker].along(all[i]); });
