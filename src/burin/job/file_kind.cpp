@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <string>
 #include <utility>
 
 #include "burin/base/text.h"
-#include "burin/job/program_file.h"
 
 namespace burin::job {
 namespace {
 
-/// So much of a file is looked at.
+/// So much of a file is looked at, and so many of its lines that say something.
 constexpr std::size_t kBeginning = 65'536;
+constexpr int kLines = 200;
 
 bool begins(std::string_view text, std::string_view with) {
   return text.substr(0, with.size()) == with;
@@ -31,21 +32,39 @@ bool next_line(std::string_view& text, std::string_view& line) {
   return false;
 }
 
+/// A word of APT before '/' or alone on its line. NC words are one letter and a number.
+bool is_apt_line(std::string_view line) {
+  constexpr std::array kAlone{"RAPID", "FINI", "END", "PARTNO", "PPRINT", "REMARK", "STOP"};
+  std::size_t letters = 0;
+  while (letters < line.size() && std::isalpha(static_cast<unsigned char>(line[letters]))) ++letters;
+  if (letters < 2) return false;
+  const std::string word = to_lower(line.substr(0, letters));
+  for (const char* alone : kAlone)
+    if (word == to_lower(alone)) return true;
+  const std::string_view rest = trim(line.substr(letters));
+  return !rest.empty() && rest.front() == '/' && letters <= 8;
+}
+
+/// A letter and a number, a comment, or the sign of a tape.
+bool is_nc_line(std::string_view line) {
+  if (line.front() == '%' || line.front() == '(' || line.front() == ';' || line.front() == '/') return true;
+  if (!std::isalpha(static_cast<unsigned char>(line.front())) || line.size() < 2) return false;
+  const std::string_view number = trim(line.substr(1));
+  return !number.empty() && std::string_view("+-.0123456789").find(number.front()) != std::string_view::npos;
+}
+
 FileKind kind_of_lines(std::string_view text) {
-  std::string_view rest = text, line;
-  // A table of TOML; words of NC and APT do not stand in brackets.
-  if (next_line(rest, line) && line.front() == '[' && line.find(']') != std::string_view::npos)
-    return FileKind::job;
-  switch (kind_of_program(text)) {
-    case ProgramKind::cl:
-      return FileKind::cl;
-    case ProgramKind::nc:
-      return FileKind::nc;
-    case ProgramKind::heidenhain:
-    case ProgramKind::unknown:
-      break;
+  std::string_view line;
+  int apt = 0, nc = 0;
+  for (int i = 0; i < kLines && next_line(text, line); ++i) {
+    if (line.front() == '[') return apt || nc ? FileKind::unknown : FileKind::job;
+    if (is_apt_line(line))
+      ++apt;
+    else if (is_nc_line(line))
+      ++nc;
   }
-  return FileKind::unknown;
+  if (apt == 0 && nc == 0) return FileKind::unknown;
+  return apt >= nc ? FileKind::cl : FileKind::nc;
 }
 
 FileKind kind_of_text(std::string_view text) {

@@ -58,14 +58,11 @@ Result<void> read_nc(std::string_view text, const std::string& name, const kinem
   options.file_name = name;
   options.machine = machine;
   file.is_nc = true;
-  if (!machine) {
-    auto program = nc::interpret(text, options, diagnostics);
-    if (!program) return program.error();
-    file.program = std::move(*program);
-  } else {
-    auto moves = nc::interpret_joints(text, options, diagnostics);
-    if (!moves) return moves.error();
-    file.program = std::move(moves->program);
+  auto moves = nc::interpret_joints(text, options, diagnostics);
+  if (!moves) return moves.error();
+  file.program = std::move(moves->program);
+  file.unknown = std::move(moves->unknown);
+  if (machine) {
     file.joints = std::move(moves->joints);
     file.tip_straight = std::move(moves->tip_straight);
   }
@@ -81,7 +78,7 @@ Result<ProgramFile> read_program(std::string_view text, const std::string& file_
   ProgramFile file;
   const FileKind kind = kind_of_file(text, file_name);
   if (kind == FileKind::nc) {
-    if (auto ok = read_nc(text, file_name, machine, file, diagnostics); !ok) return ok.error();
+    if (auto ok = read_nc(text, file_name, machine, beam, file, diagnostics); !ok) return ok.error();
   } else if (kind == FileKind::cl) {
     auto program = cl::read_apt(text, {.file_name = file_name}, diagnostics);
     if (!program) return program.error();

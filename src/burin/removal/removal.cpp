@@ -117,7 +117,7 @@ Result<std::unique_ptr<Field>> make_field(const Stock& stock, const verify::Chec
                                           const RemovalOptions& asked, ProgressSink* progress) {
   if (auto ok = check(asked); !ok) return ok.error();
   if (auto ok = validate(stock); !ok) return ok.error();
-  if (auto ok = validate(path); !ok) return ok.error();
+  if (auto ok = verify::validate(path); !ok) return ok.error();
   const auto three = three_directions(path, asked.directions);
   if (!three) return three.error();
   const geom::Box3 box = bounds(stock);

@@ -133,9 +133,17 @@ class Task {
     return l;
   }
 
-  /// A place in the part is no edge of it; a beam that does not fit in here leaves a corner; a ray that comes
-  /// to the part again before the cut has found none.
+  /// A place that the cut touches is cut, even when its ray leads away (beside a beam on the wrong side,
+  /// rounding alone would decide); a place in the part is no edge of it; a beam that does not fit in here
+  /// leaves a corner; a ray that comes to the part again before the cut has found none.
   void judge(Look& l, Vec2 n) {
+    const auto touched = scene_.cut.nearest(l.p, radius_ + scene_.options.bound_mm);
+    if (touched.found()) {
+      l.mm = std::max(0.0, touched.distance - radius_);
+      l.piece = touched.segment;
+      l.meets = true;
+      return;
+    }
     if (scene_.winding(l.p - kBeside_mm * n) > 1) {
       l.mm = 0;
       l.meets = false;
@@ -185,9 +193,13 @@ class Task {
       last = looks[i].piece;
       any = true;
       const Segment& piece = scene_.cut.segments()[last];
-      worst = std::min(worst, centre_  ? flat::most_distance(s, piece)
-                              : corner ? std::max(0.0, flat::most_distance(s, piece) - radius_)
-                                       : latest_entry(s, piece, radius_));
+      if (centre_) {
+        worst = std::min(worst, flat::most_distance(s, piece));
+        continue;
+      }
+      const double off = std::max(0.0, flat::most_distance(s, piece) - radius_);
+      worst = std::min(worst, corner ? off : latest_entry(s, piece, radius_));
+      if (off <= scene_.options.bound_mm) worst = std::min(worst, off);  // touched all along
     }
     return worst;
   }

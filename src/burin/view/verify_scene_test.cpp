@@ -78,7 +78,9 @@ TEST(MeshValues, EachSideHasItsOwnValues) {
     if (p.x < 1 || p.x > 19 || p.y < 1 || p.y > 19) continue;
     if (p.z > 0.05) {
       gouged += got[v] == -0.7f;
-      if (got[v] != -0.7f) EXPECT_EQ(got[v], 0.01f);
+      if (got[v] != -0.7f) {
+        EXPECT_EQ(got[v], 0.01f);
+      }
     } else if (p.x < 9) {
       EXPECT_EQ(got[v], -0.02f);
     } else if (p.x > 11) {
@@ -151,8 +153,12 @@ TEST(VerifyScene, ColoursFollowTheDeviation) {
     const Point3 p = design.mesh.vertices[v];
     if (p.z < 0 || p.x < 2 || p.x > 38 || p.y < 2 || p.y > 38 || std::isnan(design.value[v])) continue;
     const double r = std::hypot(p.x - 30, p.y - 20);
-    if (r < 3.5) EXPECT_EQ(design.value[v], -0.05f);
-    if (r > 6.5) EXPECT_EQ(design.value[v], 0.f);
+    if (r < 3.5) {
+      EXPECT_EQ(design.value[v], -0.05f);
+    }
+    if (r > 6.5) {
+      EXPECT_EQ(design.value[v], 0.f);
+    }
   }
   ASSERT_EQ(scene->series.size(), 1u);
   EXPECT_EQ(scene->series[0].value[1], 0.f);
@@ -233,8 +239,12 @@ TEST(OrientScene, PointsAnglesAndMapsComeBack) {
         const std::size_t at = i * c.yaws + j;
         ASSERT_EQ(c.cause[at], static_cast<int>(m.map.at(static_cast<int>(i), static_cast<int>(j))));
         const double rho = effective_radius(m.map.node(static_cast<int>(i), static_cast<int>(j)), face.mill);
-        if (c.cause[at] == 0) EXPECT_NEAR(c.radius_mm[at], rho, 1e-4 * rho);
-        if (c.cause[at] != 0) EXPECT_TRUE(std::isnan(c.radius_mm[at]));
+        if (c.cause[at] == 0) {
+          EXPECT_NEAR(c.radius_mm[at], rho, 1e-4 * rho);
+        }
+        if (c.cause[at] != 0) {
+          EXPECT_TRUE(std::isnan(c.radius_mm[at]));
+        }
       }
     }
   }
