@@ -24,7 +24,8 @@ export class Range {
     this.set(about - f * w, about - f * w + w);
   }
 }
-export interface Line { y: ArrayLike<number>; colour: string; dash?: boolean }
+/** step: a value of the way that ends there, not of the place. */
+export interface Line { y: ArrayLike<number>; colour: string; dash?: boolean; step?: boolean; name?: string }
 export interface ChartOptions {
   name: string; unit: string; range: Range;
   x: () => ArrayLike<number>; xKind: () => "time" | "length" | "node";
@@ -45,7 +46,7 @@ export class Chart {
     const canvas = el("canvas", { "aria-hidden": "true" });
     this.plot.append(canvas, this.ghost, this.cursor);
     this.plot.tabIndex = 0; this.plot.setAttribute("role", "slider"); this.plot.setAttribute("aria-label", `${o.name} over time`);
-    this.box = el("div", {}, el("div", { class: "chart-head" }, el("b", {}, o.name), o.unit && el("span", { class: "soft" }, o.unit), this.value), this.plot);
+    this.box = el("div", {}, el("div", { class: "chart-head" }, ...(o.lines.length > 1 ? o.lines.map(l => { const b = el("b", {}, l.name ?? ""); b.style.color = `var(--${l.colour})`; return b; }) : [el("b", {}, o.name)]), o.unit && el("span", { class: "soft" }, o.unit), this.value), this.plot);
     this.again = sheet(canvas, s => this.draw(s)).again;
     o.range.on(() => { this.again(); this.place(); });
     new ResizeObserver(() => this.place()).observe(this.plot);
@@ -98,7 +99,7 @@ export class Chart {
       for (let i = 0, pen = false; i < q.length; i += 2) {
         if (Number.isNaN(q[i + 1])) { pen = false; continue; }
         const px = this.px(q[i]), py = sy(q[i + 1]);
-        if (pen) g.lineTo(px, py); else { g.moveTo(px, py); if (i + 3 >= q.length || Number.isNaN(q[i + 3])) g.lineTo(px + 1.5, py); } // a lonely value is a dot
+        if (pen) { if (l.step) g.lineTo(this.px(q[i - 2]), py); g.lineTo(px, py); } else { g.moveTo(px, py); if (i + 3 >= q.length || Number.isNaN(q[i + 3])) g.lineTo(px + 1.5, py); } // a lonely value is a dot
         pen = true;
       }
       g.stroke();

@@ -183,7 +183,7 @@ async function readPath(r: Reader, n: number, center: Vec): Promise<Path> {
     r.into("path.line", n, 1, Uint32Array), r.into("path.tool", n, 1, Uint8Array), r.into("path.group", n, 1, Uint16Array),
     r.maybe("path.rotary", n, 2, Float32Array)]);
   if (axis) for (let i = 0; i < 3 * n; i += 3) {
-    const l = Math.hypot(axis[i]!, axis[i + 1]!, axis[i + 2]!);
+    const l = Math.sqrt(axis[i]! ** 2 + axis[i + 1]! ** 2 + axis[i + 2]! ** 2); // Math.hypot is slow
     if (l > 0) { axis[i]! /= l; axis[i + 1]! /= l; axis[i + 2]! /= l; } else axis[i + 2] = 1;
   }
   return { count: n, point, axis, time, kind, feed, move, line, tool, group, rotary };

@@ -19,6 +19,8 @@ import type { State, Store } from "./state";
 
 export interface Stats { frames: number; frameMs: number; pickMs: number; stockMs: number; stockTriangles: number; waiting: boolean; segments: number; triangles: number; webgl: boolean }
 
+const CURSOR = 9, FINGER = 20; // CSS pixels about them that count as under them
+
 /** What is looked at: bodies and cuts; rapids only when there is nothing else. */
 function shownBox(scene: Scene): Box3 {
   const box = new Box3(), p = new Vector3(), { path } = scene;
@@ -120,7 +122,7 @@ export class Stage {
 
   private connect(canvas: HTMLCanvasElement): void {
     const { store, view } = this, on = (keys: (keyof State)[], call: (s: Readonly<State>) => void): void => store.on(keys, s => { call(s); this.invalidate(); });
-    on(["time", "node", "playing", "show"], () => { this.path.update(); this.tool.update(); this.turnTable(); this.stock.update(); });
+    on(["time", "node", "playing", "show", "trial"], () => { this.path.update(); this.tool.update(); this.turnTable(); this.stock.update(); });
     on(["show"], () => { this.part.update(); this.outlines.update(); });
     on(["colour", "range", "only"], () => this.path.recolour());
     on(["heat", "heatRange"], () => { this.part.update(); this.outlines.update(); });
@@ -135,8 +137,8 @@ export class Stage {
     on(["theme"], () => this.recolour());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.recolour(); this.invalidate(); });
     listen(canvas, view, {
-      click: (x, y) => this.click(x, y),
-      hover: (x, y) => { this.pointer = { x, y }; this.askHover(); },
+      click: (x, y, touch) => { this.picker.reach = touch ? FINGER : CURSOR; this.click(x, y); },
+      hover: (x, y) => { this.picker.reach = CURSOR; this.pointer = { x, y }; this.askHover(); },
       leave: () => { this.pointer = null; store.set({ hovered: null }); canvas.title = ""; },
       orbitFrom: (x, y) => { const hit = this.picker.surface(this.picker.ray(view, this.partFrame.matrix, this.box, x, y)); if (hit) view.turnAbout(hit.point.applyMatrix4(this.partFrame.matrix)); },
       changed: () => this.invalidate(),
@@ -144,7 +146,9 @@ export class Stage {
     new ResizeObserver(() => { this.resize(); this.invalidate(); }).observe(this.box);
     this.box.addEventListener("draw-now", () => this.draw()); // the canvas is read at once: a picture to save
     matchMedia(`(resolution: ${devicePixelRatio}dppx)`).addEventListener("change", () => { this.resize(); this.invalidate(); });
+    this.box.addEventListener("draw-now", () => this.draw()); // before its canvas is read
     canvas.addEventListener("webglcontextrestored", () => this.invalidate());
+    this.picker.prepare();
     this.invalidate();
   }
 
@@ -175,6 +179,8 @@ export class Stage {
     clipOn.value = section.on ? 1 : 0;
     clip.value.set(0, 0, 0, sign * (section.at - this.scene.center[section.axis]!));
     clip.value.setComponent(section.axis, sign);
+    this.part.section();
+    this.stock.section();
   }
 
   private click(x: number, y: number): void {

@@ -8,12 +8,13 @@ import { brief, duration, fixed, length, stepOf, ticks, TIME_STEPS } from "./log
 import { focus, goNode, goTime, motionOf } from "./seek";
 import { button, choice, el, setIcon, sheet, themed, within } from "./ui";
 
+const narrow = matchMedia("(max-width: 760px)"); // there the figures scroll
 const SPEEDS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], FIT_SECONDS = 30;
 
 export function togglePlaying(scene: Scene, store: Store): void {
   const m = motionOf(scene);
   if (m.duration <= 0) return;
-  store.set({ playing: !store.state.playing });
+  store.set({ playing: !store.state.playing, picked: null, trial: null });
 }
 export function step(scene: Scene, store: Store, by: "node" | "move" | "pass", direction: number): void {
   store.set({ playing: false });
@@ -43,7 +44,7 @@ function readouts(scene: Scene, store: Store): { time: HTMLElement; more: HTMLEl
   const m = motionOf(scene), { path } = scene, clock = el("b", {}), way = el("span", { class: "soft" });
   const time = el("div", { class: "clock nums" }, el("span", {}, clock, el("span", { class: "soft" }, ` / ${duration(m.duration)}`)), way);
   const more = el("dl", { class: "readouts nums" }), cells = new Map<string, HTMLElement>();
-  const cell = (name: string, wide = "") => { const d = el("dd", {}); more.append(el("div", { class: wide }, el("dt", {}, name), d)); cells.set(name, d); };
+  const cell = (name: string, wide = `r-${name}`) => { const d = el("dd", {}); more.append(el("div", { class: wide }, el("dt", {}, name), d)); cells.set(name, d); };
   for (const n of ["X", "Y", "Z"]) cell(n);
   const letters = path.rotary ? (scene.machine?.axes.slice(0, 2).map(a => a.letter) ?? ["A", "C"]) : [];
   for (const l of letters) cell(l);
@@ -68,6 +69,8 @@ function readouts(scene: Scene, store: Store): { time: HTMLElement; more: HTMLEl
     say("move", String(path.move[way1])); say("line", path.line[way1] > 0 ? String(path.line[way1]) : "-");
   };
   show(); store.on(["time", "node"], show);
+  // What does not fit is not shown in part.
+  new ResizeObserver(() => { for (const c of more.children) if (c instanceof HTMLElement) c.style.visibility = c.offsetLeft + c.offsetWidth > more.clientWidth + 1 && !narrow.matches ? "hidden" : ""; }).observe(more);
   return { time, more };
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes made by JavaScript for the tests of the page, written down as docs/viewer.md says (independent of the C++ writer).
-//   node test/sample.mjs OUTDIR [NAME...]     pages from dist/index.html
+//   node test/sample.mjs OUTDIR [NAME...]     pages from data/pages/viewer.html
 import { deflateSync } from "node:zlib";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -76,7 +76,7 @@ export function container(s) {
   return Buffer.concat([head, directory, ...c.data]);
 }
 
-export function page(bytes, shell = readFileSync(new URL("../dist/index.html", import.meta.url), "utf8"), title = "sample") {
+export function page(bytes, shell = readFileSync(new URL("../../data/pages/viewer.html", import.meta.url), "utf8"), title = "sample") {
   const put = { SCENE: bytes.toString("base64"), TITLE: title };
   return shell.replace(/@(SCENE|TITLE)@/g, (_, name) => put[name]);
 }
@@ -217,7 +217,7 @@ function clock(path, r, block, grid) {
       if (next[c] >= count[c]) continue;
       const m = at(...next), empties = (cut[n] === 0) !== (cut[m] === 0), final = (cut[n] === 0xffffffff) !== (cut[m] === 0xffffffff);
       const d0 = empties ? inside(i, j, k) : distance[n], d1 = empties ? inside(...next) : distance[m];
-      if ((empties || final) && d0 * d1 < 0) crossing[3 * n + c] = share(d0 / (d0 - d1));
+      if ((empties || final) && d0 * d1 <= 0 && d0 !== d1) crossing[3 * n + c] = share(d0 / (d0 - d1));
     }
   }
   return { count, origin, step, cut, crossing };

@@ -239,7 +239,9 @@ TEST(ReadApt, TakesWhatOtherSystemsWrite) {
   bool loaded = false;
   for (const Record& record : p.records) {
     if (const auto* tool = std::get_if<ToolChange>(&record)) loaded = *tool == ToolChange{1, 16, 0.8};
-    if (const auto* arc = std::get_if<Arc>(&record)) EXPECT_EQ(arc->radius, 10);
+    if (const auto* arc = std::get_if<Arc>(&record)) {
+      EXPECT_EQ(arc->radius, 10);
+    }
   }
   EXPECT_TRUE(loaded);
   EXPECT_FALSE(diagnostics.anything_left_out());

@@ -58,14 +58,11 @@ Result<void> read_nc(std::string_view text, const std::string& name, const kinem
   options.file_name = name;
   options.machine = machine;
   file.is_nc = true;
-  if (!machine) {
-    auto program = nc::interpret(text, options, diagnostics);
-    if (!program) return program.error();
-    file.program = std::move(*program);
-  } else {
-    auto moves = nc::interpret_joints(text, options, diagnostics);
-    if (!moves) return moves.error();
-    file.program = std::move(moves->program);
+  auto moves = nc::interpret_joints(text, options, diagnostics);
+  if (!moves) return moves.error();
+  file.program = std::move(moves->program);
+  file.unknown = std::move(moves->unknown);
+  if (machine) {
     file.joints = std::move(moves->joints);
     file.tip_straight = std::move(moves->tip_straight);
   }

@@ -20,6 +20,7 @@ struct ProgramFile {
   /// NC of a machine with rotary axes: by motion; tip_straight: under G43.4.
   std::vector<kinematics::Joints> joints;
   std::vector<bool> tip_straight;
+  std::vector<bool> unknown;  ///< NC: by motion, where it ends is the machine's
   /// Tools that comments describe as some CAM systems write them: "(T1 D=6. CR=3. - ...)".
   std::map<int, cl::ToolChange> described;
 };

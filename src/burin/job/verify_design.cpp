@@ -22,13 +22,14 @@ constexpr double kTolerance_mm = 0.01;
 // Share of the tolerance by which triangles of rotational parts may leave them.
 constexpr double kRotaryShare = 1.0 / 20;
 
-/// The triangles from `first` to `last` with the vertices they use, in the order of first use.
-Mesh cut_out(const Mesh& mesh, std::size_t first, std::size_t last) {
+/// The triangles that `chosen` says, with the vertices they use, in the order of first use.
+template <class Chosen>
+Mesh cut_out(const Mesh& mesh, const Chosen& chosen) {
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> place(mesh.vertices.size(), kNone);
   Mesh out;
-  out.triangles.reserve(last - first);
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!chosen(i)) continue;
     std::array<std::uint32_t, 3> t = mesh.triangles[i];
     for (std::uint32_t& v : t) {
       if (place[v] == kNone) {
@@ -53,9 +54,12 @@ Result<void> load_rotary(const VerifyTables& tables, const FileSource& read, Ver
   job.options.tolerance_mm = *out.tolerance_mm * kRotaryShare / share;
   auto part = load_rotary_part(job, out.folder, read, diagnostics);
   if (!part) return part.error();
-  out.machined = machined_triangles(*part);
+  // Beside a rim that is cut within the tolerance, an end face has lost much along its own normal: what is
+  // not machined is only not to be touched.
+  const std::vector<bool> machined = machined_triangles(*part);
   out.deflection_mm = part->deflection_mm;
-  out.design = std::move(part->mesh);
+  out.design = cut_out(part->mesh, [&](std::size_t t) { return machined[t]; });
+  out.obstacles = cut_out(part->mesh, [&](std::size_t t) { return !machined[t]; });
   return {};
 }
 
@@ -65,8 +69,9 @@ Result<void> load_faces(OrientJobFile job, const FileSource& read, VerifyDesign&
   auto part = load_orient_part(job, out.folder, read, diagnostics);
   if (!part) return part.error();
   out.deflection_mm = part->deflection_mm;
-  out.design = cut_out(part->mesh, 0, part->design_triangles);
-  out.obstacles = cut_out(part->mesh, part->design_triangles, part->mesh.triangles.size());
+  const std::size_t design = part->design_triangles;
+  out.design = cut_out(part->mesh, [=](std::size_t t) { return t < design; });
+  out.obstacles = cut_out(part->mesh, [=](std::size_t t) { return t >= design; });
   return {};
 }
 

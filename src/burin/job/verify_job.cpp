@@ -35,7 +35,6 @@ class Reader {
     if (auto ok = stock(); !ok) return ok.error();
     in_.operation = design_.operation;
     in_.obstacles = std::move(design_.obstacles);
-    in_.machined = std::move(design_.machined);
     in_.deflection_mm = design_.deflection_mm;
     in_.tolerance_mm = *design_.tolerance_mm;
     in_.design = std::move(design_.design);
@@ -94,7 +93,8 @@ class Reader {
     in_.program = std::move(file->program);
     in_.program_is_nc = file->is_nc;
     in_.joints = std::move(file->joints);
-    tip_straight_ = std::move(file->tip_straight);
+    in_.tip_straight = std::move(file->tip_straight);
+    moving_.unknown = std::move(file->unknown);
     design_.described.merge(file->described);
     in_.program_text = std::move(*text);
     return {};
@@ -108,10 +108,10 @@ class Reader {
                      std::move(design_.described), box.diagonal(), diagnostics_);
     tools.program(in_.program);
     const verify::ToolSource source = [&tools](const cl::ToolChange& change) { return tools(change); };
-    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, tip_straight_,
-                                                                *in_.machine, source, {})
+    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, in_.tip_straight,
+                                                                *in_.machine, source, moving_)
                 : as_joints()       ? posted(source)
-                                    : verify::make_checked_path(in_.program, source, {});
+                                    : verify::make_checked_path(in_.program, source, moving_);
     if (!path) {
       Error error = path.error();
       if (error.where.line > 0) error.where.file = options_.path;
@@ -162,7 +162,7 @@ class Reader {
       }
       origins.push_back(origin_of(r));
     }
-    auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, {});
+    auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, moving_);
     in_.joints.clear();  // they do not belong to the motions of the program one by one
     if (!path) return path;
     for (verify::ToolPath& tool : path->tools)
@@ -213,7 +213,7 @@ class Reader {
   Diagnostics& diagnostics_;
   VerifyDesign design_;
   VerifyInput in_;
-  std::vector<bool> tip_straight_;
+  verify::PathOptions moving_;
 };
 
 // --- running

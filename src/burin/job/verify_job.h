@@ -50,6 +50,7 @@ struct VerifyInput {
   bool program_is_nc = false;
   std::optional<kinematics::Kinematics> machine;
   std::vector<kinematics::Joints> joints;  ///< by motion; empty: poses
+  std::vector<bool> tip_straight;          ///< the same, under G43.4
   geom::Mesh design, obstacles;
   std::vector<bool> machined;              ///< a triangle; empty: all
   std::vector<geom::Vec3> normals;         ///< a vertex of design; empty: of triangles

@@ -31,8 +31,36 @@ export function beamLines(path: Path, p: Plane, reach: number): { points: number
   }
   return out;
 }
+/** Ends closer than this are one place: drawings join lines and arcs no better, mm. */
+const JOINED = 2e-3;
+/** Curves that are drawn piece by piece, joined at their ends: contours whose inside can be told, and what stays open. */
+export function joined(curves: Pick<Outline, "point" | "closed">[]): { point: Float32Array; closed: boolean }[] {
+  const out: { point: Float32Array; closed: boolean }[] = [], open = curves.filter(c => !c.closed && c.point.length >= 6), used = new Set<number>(), cells = new Map<string, { curve: number; end: 0 | 1 }[]>();
+  for (const c of curves) if (c.closed) out.push(c);
+  const end = (c: number, e: 0 | 1): number[] => { const p = open[c].point, at = e ? p.length - 3 : 0; return [p[at], p[at + 1], p[at + 2]]; };
+  const cell = (p: number[], d: number[]) => p.map((v, k) => Math.floor(v / JOINED) + d[k]).join();
+  open.forEach((_, c) => { for (const e of [0, 1] as const) { const k = cell(end(c, e), [0, 0, 0]), l = cells.get(k); if (l) l.push({ curve: c, end: e }); else cells.set(k, [{ curve: c, end: e }]); } });
+  const next = (p: number[]) => {
+    for (const dx of [0, -1, 1]) for (const dy of [0, -1, 1]) for (const dz of [0, -1, 1]) for (const q of cells.get(cell(p, [dx, dy, dz])) ?? [])
+      if (!used.has(q.curve) && Math.hypot(...end(q.curve, q.end).map((v, k) => v - p[k])) < JOINED) return q;
+    return null;
+  };
+  open.forEach((_, c) => {
+    if (used.has(c)) return;
+    const points: number[] = [];
+    const take = (k: number, from: 0 | 1) => { used.add(k); const p = open[k].point, n = p.length / 3; for (let i = 0; i < n; ++i) { const at = 3 * (from === 0 ? i : n - 1 - i); points.push(p[at], p[at + 1], p[at + 2]); } };
+    take(c, 0);
+    for (let side = 0; side < 2; ++side) { // on from its end, then from its beginning
+      for (let q = next(points.slice(-3)); q; q = next(points.slice(-3))) take(q.curve, q.end);
+      if (side === 0) { const turned: number[] = []; for (let i = points.length - 3; i >= 0; i -= 3) turned.push(points[i], points[i + 1], points[i + 2]); points.length = 0; for (const v of turned) points.push(v); }
+    }
+    const n = points.length, closed = n > 9 && Math.hypot(points[0] - points[n - 3], points[1] - points[n - 2], points[2] - points[n - 1]) < JOINED;
+    out.push({ point: Float32Array.from(points), closed });
+  });
+  return out;
+}
 /** The whole curve when it comes near: its inside is asked for. */
-export function flatOutline(o: Outline, p: Plane, reach: number): Float64Array | null {
+export function flatOutline(o: Pick<Outline, "point">, p: Plane, reach: number): Float64Array | null {
   const n = o.point.length / 3, out = new Float64Array(2 * n);
   let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity, deep = Infinity;
   for (let i = 0; i < n; ++i) {

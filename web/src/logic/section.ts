@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cut across a path: which passes cross the plane, the profile each of them sweeps there, what they leave between
-// them, and the design's line. docs/viewer.md (close-ups) has the formulas. All points less scene.center.
+// them, and the design's line. docs/viewer-panels.md has the formulas. All points less scene.center.
 import type { Mesh, Path, Piece, Vec } from "../scene";
 import { Kind } from "../scene";
 

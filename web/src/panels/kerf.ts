@@ -3,28 +3,32 @@
 import type { Scene } from "../scene";
 import type { Store } from "../state";
 import { brief, fixed, niceStep } from "../logic/format";
-import { beamLines, beamPlane, flatOutline, nearestOn } from "../logic/kerf";
+import { beamLines, beamPlane, flatOutline, joined, nearestOn } from "../logic/kerf";
+import { dot, feedAt } from "../logic/section";
 import { el, haloed, sheet, themed, within } from "../ui";
 import type { CloseUp } from "./closeup";
 import { small } from "./scallop";
 
 /** Less than this is the rounding of coordinates, mm. */
 const NOTHING = 1e-3;
-interface Cut { kerf: number; beams: { points: number[] }[]; parts: { points: Float64Array; closed: boolean }[]; others: { points: Float64Array; closed: boolean }[]; near: { x: number; y: number; distance: number } | null }
+interface Cut { kerf: number; beams: { points: number[] }[]; parts: { points: Float64Array; closed: boolean }[]; others: { points: Float64Array; closed: boolean }[]; near: { x: number; y: number; distance: number } | null; way: [number, number] }
 
 export function kerfView(scene: Scene, store: Store): CloseUp {
   const { path } = scene, canvas = el("canvas", { "aria-hidden": "true" }), out = el("div", { class: "readout" });
   const box = el("div", { class: "map", tabindex: 0, role: "img", "aria-label": "Cut of the beam about this node; plus and minus zoom" }, canvas);
   let cut: Cut | null = null, half = 0, node = 0;
+  const all = { true: joined(scene.outlines.filter(o => o.part)), false: joined(scene.outlines.filter(o => !o.part)) };
   const make = () => {
     const tool = scene.tools[path.tool[node]], kerf = tool?.kerf || Math.max(0, ...scene.tools.map(t => t.kerf)), plane = beamPlane(path, node), reach = Math.max(2.2 * half, 5 * kerf);
-    const curves = (part: boolean) => scene.outlines.filter(o => o.part === part).map(o => ({ points: flatOutline(o, plane, reach), closed: o.closed })).filter((o): o is { points: Float64Array; closed: boolean } => o.points !== null);
+    const curves = (part: boolean) => all[`${part}`].map(o => ({ points: flatOutline(o, plane, reach), closed: o.closed })).filter((o): o is { points: Float64Array; closed: boolean } => o.points !== null);
     const parts = curves(true);
-    cut = { kerf, beams: beamLines(path, plane, reach), parts, others: curves(false), near: nearestOn(parts, 0, 0) };
+    cut = { kerf, beams: beamLines(path, plane, reach), parts, others: curves(false), near: nearestOn(parts, 0, 0), way: [1, 0] };
+    const feed = feedAt(path, node), fx = feed ? dot(feed, plane.x) : 1, fy = feed ? dot(feed, plane.y) : 0, l = Math.hypot(fx, fy);
+    if (l > 1e-9) cut.way = [fx / l, fy / l];
     const rows: [string, string][] = [["kerf", `${fixed(kerf, 3)} mm`]];
     if (cut.near && cut.near.distance < 5 * kerf) {
       const d = cut.near.distance - kerf / 2;
-      rows.push(["beam to the edge of the part", `${fixed(cut.near.distance, 4)} mm`], ["less half the kerf", `${d >= 0 ? "+" : ""}${small(d)} ${Math.abs(d) < NOTHING ? "" : d > 0 ? "(left standing)" : "(cut into the part)"}`]);
+      rows.push(["beam to the edge of the part", `${fixed(cut.near.distance, 4)} mm`], ["less half the kerf", `${d >= 0 ? "+" : ""}${small(d)} ${Math.abs(d) < NOTHING || d > kerf / 2 ? "" : d > 0 ? "(left standing)" : "(cut into the part)"}`]);
     } else rows.push(["beam to the edge of the part", "far away"]);
     out.replaceChildren(el("table", {}, el("tbody", {}, ...rows.map(([a, b]) => el("tr", {}, el("td", {}, a), el("td", {}, b))))));
   };
@@ -79,10 +83,9 @@ function paint(g: CanvasRenderingContext2D, w: number, h: number, c: Cut, half: 
   g.fillStyle = themed("hit"); g.beginPath(); g.arc(cx, cy, 3, 0, 7); g.fill();
   // Dimensions: to the edge, and the kerf on the other side.
   g.strokeStyle = ink; g.lineWidth = 1; g.textAlign = "center";
-  const n = c.near && c.near.distance > 1e-9 ? c.near : null, dx = n ? n.x / n.distance : 1, dy = n ? n.y / n.distance : 0;
+  const n = c.near && c.near.distance > 1e-9 ? c.near : null, r = c.kerf / 2 * k, [wx, wy] = c.way, bx = cx - wx * 1.6 * r, by = cy + wy * 1.6 * r;
   if (n && n.distance < 1.5 * half) dimension(g, cx, cy, cx + n.x * k, cy - n.y * k, `${fixed(n.distance, 4)} mm`, -14, ink, ground);
-  const r = c.kerf / 2 * k;
-  dimension(g, cx - dx * r - dy * r * 1.5, cy + dy * r - dx * r * 1.5, cx + dx * r - dy * r * 1.5, cy - dy * r - dx * r * 1.5, `kerf ${brief(c.kerf)} mm`, -14, ink, ground);
+  dimension(g, bx + wy * r, by + wx * r, bx - wy * r, by - wx * r, `kerf ${brief(c.kerf)} mm`, -14, ink, ground);
   const mm = niceStep(60 / k), x0 = w - 14 - mm * k, y0 = h - 12;
   g.strokeStyle = themed("soft"); g.lineWidth = 1.2;
   g.beginPath(); g.moveTo(x0, y0 - 4); g.lineTo(x0, y0); g.lineTo(x0 + mm * k, y0); g.lineTo(x0 + mm * k, y0 - 4); g.stroke();
@@ -96,6 +99,7 @@ function dimension(g: CanvasRenderingContext2D, x1: number, y1: number, x2: numb
   g.strokeStyle = colour; g.lineWidth = 1; g.beginPath(); g.moveTo(x1, y1); g.lineTo(x2, y2);
   for (const [x, y, s] of [[x1, y1, 1], [x2, y2, -1]]) { g.moveTo(x + s * (7 * ux - 3 * uy), y + s * (7 * uy + 3 * ux)); g.lineTo(x, y); g.lineTo(x + s * (7 * ux + 3 * uy), y + s * (7 * uy - 3 * ux)); }
   g.stroke();
-  // Beside the middle, upright reading.
-  haloed(g, text, (x1 + x2) / 2 - uy * off, (y1 + y2) / 2 + ux * off, colour, ground);
+  // Beside the middle, as far away as the text is wide in that direction.
+  const far = Math.sign(off) * (Math.abs(uy) * g.measureText(text).width / 2 + Math.abs(ux) * 7 + 5);
+  haloed(g, text, (x1 + x2) / 2 - uy * far, (y1 + y2) / 2 + ux * far, colour, ground);
 }

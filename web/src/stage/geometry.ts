@@ -14,6 +14,9 @@ export interface Shaped {
   closed: boolean;
 }
 
+/** Math.hypot guards against overflow and is slow. */
+const length = (x: number, y: number, z: number): number => Math.sqrt(x * x + y * y + z * z);
+
 /** For each vertex the first of the same place. */
 function weld(point: Float32Array): Uint32Array {
   const n = point.length / 3, bits = new Uint32Array(point.buffer, point.byteOffset, point.length);
@@ -45,45 +48,8 @@ function faces(point: Float32Array, index: Uint32Array): Float32Array {
   return out;
 }
 
-/** Edges of one triangle, of three, or between triangles with a crease. */
-function creases(point: Float32Array, index: Uint32Array, same: Uint32Array, face: Float32Array): { edge: Float32Array; closed: boolean } {
-  const n = index.length;
-  let size = 16;
-  while (size < n * 2) size *= 2; // half of the half edges meet their other half
-  const first = new Int32Array(size).fill(-1), second = new Int32Array(size).fill(-1);
-  for (let e = 0; e < n; ++e) {
-    const a = same[index[e]!]!, b = same[index[e % 3 === 2 ? e - 2 : e + 1]!]!;
-    if (a === b) continue;
-    const lo = Math.min(a, b), hi = Math.max(a, b);
-    let h = (Math.imul(lo, 73856093) ^ Math.imul(hi, 19349663)) >>> 0;
-    h = (h ^ h >>> 15) & size - 1;
-    for (;;) {
-      const f = first[h]!;
-      if (f < 0) { first[h] = e; break; }
-      const fa = same[index[f]!]!, fb = same[index[f % 3 === 2 ? f - 2 : f + 1]!]!;
-      if (Math.min(fa, fb) === lo && Math.max(fa, fb) === hi) { second[h] = second[h] === -1 ? e : -2; break; }
-      h = h + 1 & size - 1;
-    }
-  }
-  const out: number[] = [];
-  let closed = n > 0;
-  for (let h = 0; h < size; ++h) {
-    const e = first[h]!, f = second[h]!;
-    if (e < 0) continue;
-    if (f >= 0) {
-      const s = e - e % 3, t = f - f % 3;
-      const d = face[s]! * face[t]! + face[s + 1]! * face[t + 1]! + face[s + 2]! * face[t + 2]!;
-      const l = Math.hypot(face[s]!, face[s + 1]!, face[s + 2]!) * Math.hypot(face[t]!, face[t + 1]!, face[t + 2]!);
-      if (l === 0 || d > CREASE * l) continue;
-    } else closed = closed && f !== -1;
-    const a = 3 * index[e]!, b = 3 * index[e % 3 === 2 ? e - 2 : e + 1]!;
-    out.push(point[a]!, point[a + 1]!, point[a + 2]!, point[b]!, point[b + 1]!, point[b + 2]!);
-  }
-  return { edge: new Float32Array(out), closed };
-}
-
 /** Corners of the triangles about each welded vertex, one after the other. */
-function corners(index: Uint32Array, same: Uint32Array): { start: Uint32Array; corner: Uint32Array } {
+function corners(index: Uint32Array, same: Uint32Array): Corners {
   const start = new Uint32Array(same.length + 1), corner = new Uint32Array(index.length);
   for (let c = 0; c < index.length; ++c) ++start[same[index[c]!]! + 1]!;
   for (let v = 0; v < same.length; ++v) start[v + 1]! += start[v]!;
@@ -92,10 +58,40 @@ function corners(index: Uint32Array, same: Uint32Array): { start: Uint32Array; c
   return { start, corner };
 }
 
+/** Edges of one triangle, of three, or between triangles with a crease. Each is found at the lower of its vertices. */
+function creases(point: Float32Array, index: Uint32Array, same: Uint32Array, unit: Float32Array, at: Corners): { edge: Float32Array; closed: boolean } {
+  const out: number[] = [];
+  let closed = index.length > 0;
+  const ends: number[] = [], faces: number[] = []; // of the edges at one vertex
+  for (let v = 0; v < same.length; ++v) {
+    ends.length = faces.length = 0;
+    for (let i = at.start[v]!; i < at.start[v + 1]!; ++i) {
+      const c = at.corner[i]!, t = c - c % 3;
+      for (let k = 1; k < 3; ++k) { const w = same[index[t + (c - t + k) % 3]!]!; if (w > v) { ends.push(w); faces.push(t); } }
+    }
+    const many = ends.length > 2 * MANY ? new Map<number, number[]>() : null;
+    if (many) ends.forEach((w, k) => { const l = many.get(w); if (l) l.push(k); else many.set(w, [k]); });
+    for (let k = 0; k < ends.length; ++k) {
+      const w = ends[k]!;
+      if (w < 0) continue;
+      let other = -1, count = 1;
+      const meet = (j: number): void => { other = faces[j]!; ++count; ends[j] = -1; };
+      if (many) { for (const j of many.get(w)!) if (j > k) meet(j); } else for (let j = k + 1; j < ends.length; ++j) if (ends[j] === w) meet(j);
+      const s = faces[k]!;
+      if (count === 2 && unit[s]! * unit[other]! + unit[s + 1]! * unit[other + 1]! + unit[s + 2]! * unit[other + 2]! > CREASE) continue;
+      closed = closed && count > 1;
+      for (const q of [3 * v, 3 * w]) out.push(point[q]!, point[q + 1]!, point[q + 2]!);
+    }
+  }
+  return { edge: new Float32Array(out), closed };
+}
+
+interface Corners { start: Uint32Array; corner: Uint32Array }
+
 export function shape(point: Float32Array, index: Uint32Array): Shaped {
-  const same = weld(point), face = faces(point, index), { start, corner } = corners(index, same);
+  const same = weld(point), face = faces(point, index), at = corners(index, same), { start, corner } = at;
   const unit = new Float32Array(face);
-  for (let t = 0; t < unit.length; t += 3) { const l = Math.hypot(unit[t]!, unit[t + 1]!, unit[t + 2]!) || 1; unit[t]! /= l; unit[t + 1]! /= l; unit[t + 2]! /= l; }
+  for (let t = 0; t < unit.length; t += 3) { const l = length(unit[t]!, unit[t + 1]!, unit[t + 2]!) || 1; unit[t]! /= l; unit[t + 1]! /= l; unit[t + 2]! /= l; }
   const normal = new Float32Array(3 * index.length), from = new Uint32Array(index.length), out = new Uint32Array(index.length);
   let made = 0;
   for (let v = 0; v < same.length; ++v) {
@@ -108,7 +104,7 @@ export function shape(point: Float32Array, index: Uint32Array): Shaped {
         const d = corner[j]!, s = d - d % 3;
         if (unit[t]! * unit[s]! + unit[t + 1]! * unit[s + 1]! + unit[t + 2]! * unit[s + 2]! > CREASE) { x += face[s]!; y += face[s + 1]!; z += face[s + 2]!; }
       }
-      const l = Math.hypot(x, y, z);
+      const l = length(x, y, z);
       if (l > 0) { x /= l; y /= l; z /= l; } else z = 1;
       let k = Math.max(begin, made - TRIED);
       while (k < made && !(from[k] === index[c] && normal[3 * k]! * x + normal[3 * k + 1]! * y + normal[3 * k + 2]! * z > SAME)) ++k;
@@ -118,5 +114,5 @@ export function shape(point: Float32Array, index: Uint32Array): Shaped {
   }
   const place = new Float32Array(3 * made), packed = new Int16Array(3 * made);
   for (let i = 0; i < made; ++i) for (let c = 0; c < 3; ++c) { place[3 * i + c] = point[3 * from[i]! + c]!; packed[3 * i + c] = Math.round(32767 * normal[3 * i + c]!); }
-  return { point: place, normal: packed, from: from.slice(0, made), index: out, ...creases(point, index, same, face) };
+  return { point: place, normal: packed, from: from.slice(0, made), index: out, ...creases(point, index, same, unit, at) };
 }

@@ -3,7 +3,7 @@
 import type { View } from "./view";
 
 export interface Inputs {
-  click(x: number, y: number): void; // CSS pixels of the canvas
+  click(x: number, y: number, touch: boolean): void; // CSS pixels of the canvas
   hover(x: number, y: number): void;
   leave(): void;
   /** Before an orbit begins. */
@@ -56,7 +56,7 @@ export function listen(canvas: HTMLElement, view: View, on: Inputs): void {
     const one = down.size === 1 && down.has(e.pointerId);
     down.delete(e.pointerId);
     canvas.classList.remove("drag");
-    if (one && !moved && e.type === "pointerup" && e.button === 0) on.click(start.x, start.y);
+    if (one && !moved && e.type === "pointerup" && e.button === 0) on.click(start.x, start.y, e.pointerType === "touch");
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);

@@ -15,14 +15,14 @@ export const NO_VALUE = -1e30;
 
 export interface SurfaceOptions { colour: Color; opacity?: number; back?: boolean; nearer?: number; tinted?: boolean; free?: boolean; shine?: number }
 
-/** Uniforms of its own: colour, opacity, heat (0, 1), range, capped. */
+/** Uniforms of its own: colour, cutColour, opacity, heat (0, 1), range, push. */
 export function surfaceMaterial(ctx: Context, o: SurfaceOptions): ShaderMaterial {
   const opacity = o.opacity ?? 1;
   return new ShaderMaterial({
     glslVersion: GLSL3, side: o.back === false ? FrontSide : DoubleSide, transparent: opacity < 1, depthWrite: opacity >= 1,
     polygonOffset: true, polygonOffsetFactor: 1 - (o.nearer ?? 0), polygonOffsetUnits: 2 - 2 * (o.nearer ?? 0),
-    uniforms: { clip: ctx.shared.clip, clipOn: o.free ? { value: 0 } : ctx.shared.clipOn, ramp: ctx.shared.ramp, pixel: ctx.shared.pixel,
-      colour: { value: o.colour }, cutColour: { value: o.colour.clone() }, opacity: { value: opacity }, heat: { value: 0 }, range: { value: 1 }, capped: { value: 0 }, shine: { value: o.shine ?? 0.14 }, push: { value: 0 } },
+    uniforms: { clip: ctx.shared.clip, clipOn: o.free ? { value: 0 } : ctx.shared.clipOn, ramp: ctx.shared.ramp,
+      colour: { value: o.colour }, cutColour: { value: o.colour.clone() }, opacity: { value: opacity }, heat: { value: 0 }, range: { value: 1 }, shine: { value: o.shine ?? 0.14 }, push: { value: 0 } },
     vertexShader: `
       in float value; ${o.tinted ? "in float tint; out float vTint;" : ""}
       uniform float push; // mm away from the eye in depth only
@@ -34,18 +34,13 @@ export function surfaceMaterial(ctx: Context, o: SurfaceOptions): ShaderMaterial
         if (push > 0.0) gl_Position.z = back.z / back.w * gl_Position.w;
       }`,
     fragmentShader: `
-      uniform vec3 colour; uniform vec3 cutColour; uniform float opacity, heat, range, capped, pixel, shine; uniform sampler2D ramp;
+      uniform vec3 colour; uniform vec3 cutColour; uniform float opacity, heat, range, shine; uniform sampler2D ramp;
       in vec3 vNormal; in float vValue; ${o.tinted ? "in float vTint;" : ""} ${CLIP_FRAGMENT}
       out vec4 result;
       void main() {
         cut();
         vec3 base = colour;
         ${o.tinted ? "base = mix(colour, cutColour, vTint);" : ""}
-        if (capped > 0.5 && clipOn > 0.5 && !gl_FrontFacing) {
-          float hatch = mod(gl_FragCoord.x + gl_FragCoord.y, 8.0 * pixel) / pixel;
-          result = vec4(mix(colour * 0.95, colour * 0.74, smoothstep(1.4, 0.5, abs(hatch - 1.4))), opacity);
-          return;
-        }
         if (heat > 0.5) base = vValue < -1e20 ? vec3(0.6, 0.62, 0.66) : texture(ramp, vec2(clamp(0.5 + 0.5 * vValue / range, 0.002, 0.998), 0.5)).rgb;
         vec3 n = normalize(vNormal);
         if (!gl_FrontFacing) n = -n;

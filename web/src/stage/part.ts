@@ -3,11 +3,12 @@
 import { BufferAttribute, BufferGeometry, Color, Group, type LineSegments, Mesh as Object, type ShaderMaterial } from "three";
 import { heatRange } from "../colours";
 import { Role, type Mesh } from "../scene";
+import { Cap } from "./cap";
 import type { Context } from "./context";
 import { shape } from "./geometry";
 import { lineMaterial, lines, NO_VALUE, surfaceMaterial } from "./materials";
 
-interface Body { mesh: Mesh; surface: Object; material: ShaderMaterial; edges: LineSegments | null; edgeMaterial: ShaderMaterial }
+interface Body { mesh: Mesh; surface: Object; material: ShaderMaterial; edges: LineSegments | null; edgeMaterial: ShaderMaterial; cap: Cap | null }
 
 /** So much of a cell of the stock's clock its surface may lie within the part. */
 const BURIED = 0.8;
@@ -33,7 +34,6 @@ export class Part {
     }
     const opacity = mesh.role === Role.stock ? STOCK_OPACITY : mesh.role === Role.obstacle ? OBSTACLE_OPACITY : 1;
     const material = surfaceMaterial(this.ctx, { colour: new Color(), opacity, nearer: mesh.role === Role.result ? 0.5 : 0 });
-    material.uniforms["capped"]!.value = shaped.closed && opacity === 1 ? 1 : 0;
     const surface = new Object(g, material);
     surface.frustumCulled = false;
     surface.renderOrder = opacity < 1 ? 10 : 0;
@@ -41,7 +41,9 @@ export class Part {
     const edges = shaped.edge.length > 0 && shaped.edge.length < 6 * 200_000 ? lines(shaped.edge, edgeMaterial) : null;
     if (edges) { edges.renderOrder = 1; surface.add(edges); }
     this.group.add(surface);
-    return { mesh, surface, material, edges, edgeMaterial };
+    const cap = shaped.closed && opacity === 1 ? new Cap(this.ctx, this.bodies.length, material.uniforms["colour"]!.value as Color, 1) : null;
+    if (cap) this.group.add(...cap.passes(g), cap.face);
+    return { mesh, surface, material, edges, edgeMaterial, cap };
   }
   recolour(): void {
     const { theme } = this.ctx, dark = theme.dark;
@@ -54,13 +56,17 @@ export class Part {
       e.copy(theme.ink).lerp(theme.part, dark ? 0.5 : 0.25);
     }
   }
+  section(): void { for (const b of this.bodies) b.cap?.update(b.surface.visible); }
   update(): void {
     const s = this.ctx.store.state, { stock } = this.ctx.scene, clocked = stock !== null;
     for (const b of this.bodies) {
       const { role } = b.mesh;
       b.surface.visible = role === Role.design ? s.show.part : role === Role.obstacle ? s.show.obstacles : s.show.stock && !clocked;
       b.material.uniforms["heat"]!.value = s.heat && b.mesh.value ? 1 : 0;
-      b.material.uniforms["push"]!.value = role === Role.design && s.show.stock && stock ? BURIED * stock.step : 0;
+      b.cap?.update(b.surface.visible);
+      const push = role === Role.design && s.show.stock && stock ? BURIED * stock.step : 0;
+      b.material.uniforms["push"]!.value = push;
+      if (b.edges) b.edges.visible = push === 0;
       b.material.uniforms["range"]!.value = heatRange(b.mesh, s.heatRange);
     }
   }

@@ -120,7 +120,7 @@ export class PathLines {
 function cutLength(path: Path): number {
   const p = path.point;
   let l = 0;
-  for (let i = 1, k = 3; i < path.count; ++i, k += 3) if (path.kind[i] === Kind.feed) l += Math.hypot(p[k]! - p[k - 3]!, p[k + 1]! - p[k - 2]!, p[k + 2]! - p[k - 1]!);
+  for (let i = 1, k = 3; i < path.count; ++i, k += 3) if (path.kind[i] === Kind.feed) l += Math.sqrt((p[k]! - p[k - 3]!) ** 2 + (p[k + 1]! - p[k - 2]!) ** 2 + (p[k + 2]! - p[k - 1]!) ** 2);
   return l;
 }
 

@@ -91,12 +91,12 @@ export class Ways {
         if (!project(b[at + (k & 1 ? 3 : 0)]!, b[at + (k & 2 ? 4 : 1)]!, b[at + (k & 4 ? 5 : 2)]!, v, 0)) return 0; // beside the eye: look into it
         x0 = Math.min(x0, v[0]!); x1 = Math.max(x1, v[0]!); y0 = Math.min(y0, v[1]!); y1 = Math.max(y1, v[1]!);
       }
-      const d = Math.hypot(Math.max(0, x0 - x, x - x1), Math.max(0, y0 - y, y - y1));
+      const dx = Math.max(0, x0 - x, x - x1), dy = Math.max(0, y0 - y, y - y1), d = Math.sqrt(dx * dx + dy * dy);
       return d >= cost ? Infinity : d;
     }, i => {
       if (!project(point[3 * i]!, point[3 * i + 1]!, point[3 * i + 2]!, v, 0) || !project(point[3 * i + 3]!, point[3 * i + 4]!, point[3 * i + 5]!, v, 3)) return;
       const dx = v[3]! - v[0]!, dy = v[4]! - v[1]!, dd = dx * dx + dy * dy, t = dd > 0 ? Math.min(1, Math.max(0, ((x - v[0]!) * dx + (y - v[1]!) * dy) / dd)) : 0;
-      const pixels = Math.hypot(v[0]! + t * dx - x, v[1]! + t * dy - y), depth = v[2]! + t * (v[5]! - v[2]!);
+      const px = v[0]! + t * dx - x, py = v[1]! + t * dy - y, pixels = Math.sqrt(px * px + py * py), depth = v[2]! + t * (v[5]! - v[2]!);
       if (pixels > reach) return;
       const s = score(pixels, depth) + (kind[i + 1] === Kind.rapid ? 1.5 : 0);
       if (s >= cost) return;

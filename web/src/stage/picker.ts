@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The cursor's questions to the scene, in the part's frame whatever the table does.
 import { Matrix4, Vector3 } from "three";
-import { Kind } from "../scene";
+import { Kind, type Mesh } from "../scene";
 import type { Context } from "./context";
 import type { Findings } from "./marks";
 import type { Part } from "./part";
@@ -10,17 +10,29 @@ import { type Hit, type Ray, type Screen, Surface, type WayHit, Ways } from "./p
 import type { StockView } from "./stock";
 import type { View } from "./view";
 
-const REACH = 9; // CSS pixels about the cursor
 const SNAP = 7; // to a vertex, when measuring
 /** How far behind a surface, of the depth's range, a way still counts as seen: cuts lie on their surface. */
 const BEHIND = 0.004;
 
 export class Picker {
   private ways: Ways | null = null;
-  private surfaces = new Map<object, Surface>();
+  private surfaces = new Map<Mesh, Surface>();
   milliseconds = 0;
+  reach = 1; // CSS pixels about the cursor
   constructor(private ctx: Context, private part: Part, private stock: StockView, private findings: Findings) {}
 
+  /** Makes the trees before they are asked for, one after the other when there is time. */
+  prepare(): void {
+    const work: (() => void)[] = [() => { this.ways ??= new Ways(this.ctx.scene.path); }, ...this.part.solid().map(mesh => () => { this.of(mesh); })];
+    const idle = (call: () => void): void => { if ("requestIdleCallback" in window) requestIdleCallback(call, { timeout: 2000 }); else setTimeout(call, 200); };
+    const next = (): void => { work.shift()?.(); if (work.length > 0) idle(next); };
+    idle(next);
+  }
+  private of(mesh: Mesh): Surface {
+    let s = this.surfaces.get(mesh);
+    if (!s) { s = new Surface(mesh); this.surfaces.set(mesh, s); }
+    return s;
+  }
   private screen(view: View, table: Matrix4, box: HTMLElement): Screen {
     return { matrix: view.viewProjection().multiply(table), width: box.clientWidth, height: box.clientHeight };
   }
@@ -38,9 +50,7 @@ export class Picker {
   surface(ray: Ray): Hit | null {
     let best = this.stock.hit(ray, Infinity, this.kept);
     for (const mesh of this.part.solid()) {
-      let s = this.surfaces.get(mesh);
-      if (!s) { s = new Surface(mesh); this.surfaces.set(mesh, s); }
-      const h = s.hit(ray, best?.distance ?? Infinity, this.kept);
+      const h = this.of(mesh).hit(ray, best?.distance ?? Infinity, this.kept);
       if (h) best = h;
     }
     return best;
@@ -52,14 +62,14 @@ export class Picker {
     this.ways ??= new Ways(path);
     const screen = this.screen(view, table, box), now = waysDone(this.ctx);
     const hit = this.surface(this.ray(view, table, box, x, y)), wall = hit ? hit.point.applyMatrix4(screen.matrix).z + BEHIND : Infinity;
-    const found = this.ways.nearest(screen, x, y, REACH, (node, depth, p) =>
+    const found = this.ways.nearest(screen, x, y, this.reach, (node, depth, p) =>
       (show.rapids || path.kind[node] !== Kind.rapid) && (only === null || path.group[node] === only) && (show.ahead || node - 1 < now) && depth <= wall && this.kept(p));
     this.milliseconds = performance.now() - begin;
     return found;
   }
   finding(view: View, table: Matrix4, box: HTMLElement, x: number, y: number): { index: number } | null {
     const { matrix, width, height } = this.screen(view, table, box);
-    let best: { index: number } | null = null, least = REACH;
+    let best: { index: number } | null = null, least = this.reach;
     for (const f of this.findings.at) {
       const p = f.place.clone().applyMatrix4(matrix), d = Math.hypot((p.x + 1) / 2 * width - x, (1 - p.y) / 2 * height - y);
       if (d < least) { least = d; best = f; }

@@ -3,6 +3,7 @@
 // so that scrubbing is as fine as the machine is fast.
 import { BufferAttribute, BufferGeometry, Color, Group, Mesh as Object, type ShaderMaterial, type Vector3 } from "three";
 import { Role, type Mesh, type Path, type StockClock, type Vec } from "../scene";
+import { Cap } from "./cap";
 import type { Context } from "./context";
 import { surfaceMaterial } from "./materials";
 import { waysDone } from "./path";
@@ -41,12 +42,14 @@ export class StockView {
   private busy = false;
   private asked = "";
   private material: ShaderMaterial;
-  private bricks = new Map<number, { object: Object; surface: Surface | null }>();
+  private cap: Cap;
+  private bricks = new Map<number, { object: Object; passes: Object[]; surface: Surface | null }>();
   private started = 0;
   milliseconds = 0; // of the last answer
   constructor(private ctx: Context) {
     this.material = surfaceMaterial(ctx, { colour: new Color(), tinted: true, nearer: 0.5, shine: 0.1 });
-    this.material.uniforms["capped"]!.value = 1;
+    this.cap = new Cap(ctx, 90, this.material.uniforms["colour"]!.value as Color, -1);
+    this.group.add(this.cap.face);
     this.recolour();
     this.update();
   }
@@ -96,7 +99,7 @@ export class StockView {
   }
   private put(b: BrickMesh): void {
     const old = this.bricks.get(b.brick);
-    if (old) { this.group.remove(old.object); old.object.geometry.dispose(); this.bricks.delete(b.brick); }
+    if (old) { this.group.remove(old.object, ...old.passes); old.object.geometry.dispose(); this.bricks.delete(b.brick); }
     if (b.index.length === 0) return;
     const g = new BufferGeometry();
     g.setAttribute("position", new BufferAttribute(b.position, 3));
@@ -104,9 +107,12 @@ export class StockView {
     g.setAttribute("tint", new BufferAttribute(b.tint, 1));
     g.setIndex(new BufferAttribute(b.index, 1));
     const object = new Object(g, this.material);
-    this.group.add(object);
-    this.bricks.set(b.brick, { object, surface: null });
+    const passes = this.cap.passes(g);
+    this.group.add(object, ...passes);
+    this.bricks.set(b.brick, { object, passes, surface: null });
+    this.cap.update(true);
   }
+  section(): void { this.cap.update(true); }
   recolour(): void {
     const { dark } = this.ctx.theme;
     (this.material.uniforms["colour"]!.value as Color).set(dark ? "#6f6a5c" : "#bdb193");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface of the stock at a time, brick by brick: surface nets (Gibson, Constrained elastic surface nets, MICCAI 1998)
-// over the nodes of the stock clock. Where the clock knows the crossing of the surface with an edge the vertex lies there,
-// elsewhere it is relaxed within its cell. Runs in a worker; knows nothing of the page.
+// over the nodes of the stock clock. Where the clock knows the crossing of the surface with an edge the vertex lies there;
+// elsewhere the crossing is that of the blurred material, and the vertex is relaxed within its cell, so that slopes do not
+// look like stairs. Runs in a worker; knows nothing of the page.
 
 export interface ClockData { count: [number, number, number]; origin: [number, number, number]; step: number; cut: Uint32Array; crossing: Uint8Array }
 export interface Cutter { radius: number; low: number; high: number; corner: number }
@@ -10,10 +11,12 @@ export interface StockWish { limit: number; poses: Float32Array; cutter: Cutter[
 export interface BrickMesh { brick: number; position: Float32Array; normal: Float32Array; tint: Float32Array; index: Uint32Array }
 
 const BRICK = 32; // cells each way
-const HALO = 4; // cells beside it that its vertices and normals depend on
+const HALO = 5; // cells beside it that its vertices and normals depend on
 const E = BRICK + 2 * HALO; // cells looked at
 const N = E + 1; // nodes
 const RELAX = 2;
+const BLUR = 2; // nodes to either side
+const HALF = (2 * BLUR + 1) ** 3 / 2;
 const INSET = 0.04; // of a cell: how near a relaxed vertex comes to its walls
 
 /** Corner c of a cell is at (c & 1, c >> 1 & 1, c >> 2); the twelve edges as (corner, direction). */
@@ -30,6 +33,9 @@ export class StockMesher {
   private limit = 0;
   private nodes = new Uint8Array(N * N * N);
   private vertex = new Int32Array(E * E * E);
+  private blurred = new Uint8Array(N * N * N); // sum over the nodes about
+  private spare = new Uint8Array(N * N * N);
+  private row = new Int32Array(N * N); // how many of a row of nodes are solid
 
   constructor(private clock: ClockData) {
     const { cut, count } = clock, n = cut.length;
@@ -98,6 +104,7 @@ export class StockMesher {
     const some = this.fill(first);
     const none = { brick, position: new Float32Array(0), normal: new Float32Array(0), tint: new Float32Array(0), index: new Uint32Array(0) };
     if (!some) return none;
+    this.blur();
     const { place, free, cell } = this.vertices(first);
     this.relax(place, free, cell);
     return this.quads(brick, first, place, cell) ?? none;
@@ -105,7 +112,7 @@ export class StockMesher {
   /** Copies the nodes about a brick; false: all the same. */
   private fill(first: [number, number, number]): boolean {
     const [nx, ny, nz] = this.clock.count, { nodes, solid } = this;
-    nodes.fill(0);
+    nodes.fill(0); this.row.fill(0);
     let sum = 0;
     for (let k = 0; k < N; ++k) {
       const z = first[2] + k;
@@ -114,10 +121,33 @@ export class StockMesher {
         const y = first[1] + j;
         if (y < 0 || y >= ny) continue;
         const x0 = Math.max(0, -first[0]), x1 = Math.min(N, nx - first[0]), from = (z * ny + y) * nx + first[0], to = (k * N + j) * N;
-        for (let i = x0; i < x1; ++i) sum += nodes[to + i] = solid[from + i]!;
+        let here = 0;
+        for (let i = x0; i < x1; ++i) here += nodes[to + i] = solid[from + i]!;
+        this.row[k * N + j] = here; sum += here;
       }
     }
     return sum > 0 && sum < N * N * N;
+  }
+  /** Sums of the nodes about each node, one direction after the other; beyond the brick the last one counts again. */
+  private blur(): void {
+    const { nodes, blurred, spare, row } = this;
+    const pass = (from: Uint8Array, to: Uint8Array, d: number, along: number, across: number, onlyMixed: boolean): void => {
+      for (let a = 0; a < N; ++a) for (let b = 0; b < N; ++b) {
+        const at = a * across + b * along;
+        if (onlyMixed) { const s = row[a * N + b]!; if (s === 0 || s === N) { to.fill(s === 0 ? 0 : 2 * BLUR + 1, at, at + N); continue; } }
+        let sum = 0;
+        for (let i = -BLUR; i <= BLUR; ++i) sum += from[at + Math.max(0, i) * d]!;
+        for (let i = 0; i < N; ++i) { to[at + i * d] = sum; sum += from[at + Math.min(N - 1, i + BLUR + 1) * d]! - from[at + Math.max(0, i - BLUR) * d]!; }
+      }
+    };
+    pass(nodes, blurred, 1, N, N * N, true);
+    pass(blurred, spare, N, 1, N * N, false);
+    pass(spare, blurred, N * N, 1, N, false);
+  }
+  /** Whether this row of cells has no surface: the four rows of nodes about it are all empty or all full. */
+  private still(j: number, k: number): boolean {
+    const { row } = this, r = k * N + j, s = row[r]!;
+    return (s === 0 || s === N) && row[r + 1] === s && row[r + N] === s && row[r + N + 1] === s;
   }
   /** Share of the step from a node at which the surface crosses its edge; -1: not known. */
   private crossing(x: number, y: number, z: number, d: number): number {
@@ -127,10 +157,11 @@ export class StockMesher {
     return v === 0 ? -1 : v / 256;
   }
   private vertices(first: [number, number, number]): { place: Float32Array; free: Uint8Array; cell: Int32Array } {
-    const { nodes, vertex } = this, place: number[] = [], free: number[] = [], cells: number[] = [];
+    const { nodes, vertex, blurred } = this, place: number[] = [], free: number[] = [], cells: number[] = [];
     const corner = [0, 1, N, N + 1, N * N, N * N + 1, N * N + N, N * N + N + 1], stride = [1, N, N * N];
     vertex.fill(-1);
     for (let k = 0; k < E; ++k) for (let j = 0; j < E; ++j) {
+      if (this.still(j, k)) continue;
       let n = (k * N + j) * N, c = (k * E + j) * E;
       for (let i = 0; i < E; ++i, ++n, ++c) {
         const s = nodes[n]! + nodes[n + 1]! + nodes[n + N]! + nodes[n + N + 1]! + nodes[n + N * N]! + nodes[n + N * N + 1]! + nodes[n + N * N + N]! + nodes[n + N * N + N + 1]!;
@@ -141,7 +172,11 @@ export class StockMesher {
           if (nodes[p] === nodes[p + stride[d]!]) continue;
           const fx = from & 1, fy = from >> 1 & 1, fz = from >> 2;
           let t = this.crossing(first[0] + i + fx, first[1] + j + fy, first[2] + k + fz, d);
-          if (t < 0) { t = 0.5; ++unknown; }
+          if (t < 0) {
+            const b0 = blurred[p]! - HALF, b1 = blurred[p + stride[d]!]! - HALF;
+            t = b0 * b1 < 0 ? b0 / (b0 - b1) : Math.abs(b0) < Math.abs(b1) ? INSET : 1 - INSET;
+            ++unknown;
+          }
           x += fx + (d === 0 ? t : 0); y += fy + (d === 1 ? t : 0); z += fz + (d === 2 ? t : 0); ++m;
         }
         vertex[c] = cells.length;
@@ -172,7 +207,7 @@ export class StockMesher {
     const node = [1, N, N * N], step = [1, E, E * E];
     let made = 0;
     const lo = HALO - 1, hi = HALO + BRICK + 1;
-    for (let k = lo; k < hi; ++k) for (let j = lo; j < hi; ++j) for (let i = lo; i < hi; ++i) {
+    for (let k = lo; k < hi; ++k) for (let j = lo; j < hi; ++j) for (let i = this.still(j, k) ? hi : lo; i < hi; ++i) {
       const n = (k * N + j) * N + i, c = (k * E + j) * E + i;
       const core = i >= HALO && j >= HALO && k >= HALO && i < HALO + BRICK && j < HALO + BRICK && k < HALO + BRICK;
       for (let d = 0; d < 3; ++d) {
@@ -194,7 +229,7 @@ export class StockMesher {
     for (let v = 0; v < cell.length; ++v) {
       const u = used[v]!;
       if (u < 0) continue;
-      const l = Math.hypot(normal[3 * v]!, normal[3 * v + 1]!, normal[3 * v + 2]!) || 1;
+      const l = Math.sqrt(normal[3 * v]! ** 2 + normal[3 * v + 1]! ** 2 + normal[3 * v + 2]! ** 2) || 1;
       for (let a = 0; a < 3; ++a) { out.position[3 * u + a] = origin[a]! + (first[a]! + place[3 * v + a]!) * size; out.normal[3 * u + a] = normal[3 * v + a]! / l; }
       out.tint[u] = this.wasCut(cell[v]!, first) ? 1 : 0;
     }
