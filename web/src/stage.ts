@@ -19,6 +19,8 @@ import type { State, Store } from "./state";
 
 export interface Stats { frames: number; frameMs: number; pickMs: number; stockMs: number; stockTriangles: number; waiting: boolean; segments: number; triangles: number; webgl: boolean }
 
+/** Ways in sight that are drawn with a width, by a graphics card and without one. */
+const RIBBONS = 400_000, RIBBONS_SOFTWARE = 12_000;
 const CURSOR = 9, FINGER = 20; // CSS pixels about them that count as under them
 
 /** What is looked at: bodies and cuts; rapids only when there is nothing else. */
@@ -55,6 +57,7 @@ export class Stage {
   private axes!: TableAxes;
   private ground!: Ground;
   private picker!: Picker;
+  private ribbons = RIBBONS;
   private asked = false;
   private last = 0;
   private frames = 0;
@@ -76,7 +79,8 @@ export class Stage {
     box.append(canvas);
     this.renderer = new WebGLRenderer({ canvas, context: gl });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
-    this.renderer.info.autoReset = true;
+    const info = gl.getExtension("WEBGL_debug_renderer_info"), name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+    this.ribbons = /swiftshader|llvmpipe|software|basic render/i.test(name) ? RIBBONS_SOFTWARE : RIBBONS;
     this.fill();
     this.connect(canvas);
   }
@@ -226,9 +230,9 @@ export class Stage {
   private draw(): void {
     const begin = performance.now(), { view } = this;
     this.ground.zoomed(view.pixel);
-    this.path.zoomed(view.pixel);
-    this.renderer!.render(this.root, view.camera);
     view.place();
+    this.path.zoomed(view.pixel, view.viewProjection().multiply(this.partFrame.matrix), this.ribbons);
+    this.renderer!.render(this.root, view.camera);
     this.overlay.frame(view.right, view.up, view.back, view.pixel);
     this.overlay.say(this.labels());
     this.frameMs = performance.now() - begin;
