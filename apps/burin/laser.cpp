@@ -323,13 +323,7 @@ void add_kerf_options(CLI::App& app, LaserArgs& a) {
 
 void add_plan_options(CLI::App& app, LaserArgs& a) {
   laser::LaserOptions& p = a.plan;
-  add_choice<laser::Side>(app, "--side", p.side,
-                          {{"auto", laser::Side::automatic},
-                           {"outside", laser::Side::outside},
-                           {"inside", laser::Side::inside},
-                           {"on", laser::Side::on}},
-                          "where the beam runs: by nesting, one side for all, or on the line");
-  add_number(app, "--join", p.tolerance.join_mm, kLength, "ends this close are joined (default 0.01)");
+  add_drawing(app, p.side, a.units, p.tolerance.join_mm);
   add_choice<geom::FitMethod>(app, "--fit", p.fit,
                               {{"minimal", geom::FitMethod::minimal}, {"bisect", geom::FitMethod::bisect}},
                               "fewest arcs, or the paper's bisection");
@@ -354,8 +348,6 @@ void add_plan_options(CLI::App& app, LaserArgs& a) {
                                 {"conventional", laser::Direction::conventional}},
                                "cutting direction");
   add_layers(app, a.layers);
-  add_choice<io::Units>(app, "--units", a.units, {{"mm", io::Units::mm}, {"inch", io::Units::inch}},
-                        "unit of the drawing's numbers, whatever the file says");
   app.add_flag("--no-arcs", a.no_arcs, "lines only, chords within the tolerance");
   add_number(app, "--overcut", p.overcut_mm, kLength, "cut on past the start of a closed contour");
   add_integer(app, "--micro-joints", p.micro_joints.per_contour, 0, 1000, "bridges left per closed contour");

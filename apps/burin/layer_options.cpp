@@ -13,6 +13,18 @@ void add_layers(CLI::App& app, std::vector<std::string>& lists) {
       ->type_name("LIST");
 }
 
+void add_drawing(CLI::App& app, laser::Side& side, io::Units& units, double& join_mm) {
+  add_choice<laser::Side>(app, "--side", side,
+                          {{"auto", laser::Side::automatic},
+                           {"outside", laser::Side::outside},
+                           {"inside", laser::Side::inside},
+                           {"on", laser::Side::on}},
+                          "where the beam runs: by nesting, one side for all, or on the line");
+  add_choice<io::Units>(app, "--units", units, {{"mm", io::Units::mm}, {"inch", io::Units::inch}},
+                        "unit of the drawing's numbers, whatever the file says");
+  add_number(app, "--join", join_mm, kLength, "ends this close are joined (default 0.01)");
+}
+
 Result<std::map<std::string, laser::Treatment>> parse_layers(const std::vector<std::string>& lists) {
   std::map<std::string, laser::Treatment> layers;
   for (const std::string& list : lists) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // burin verify: what a tool path does to a design, found without the planners.
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "burin/io/stl/stl.h"
 #include "burin/job/verify_job.h"
+#include "burin/view/verify_scene.h"
 #include "cli.h"
 #include "commands.h"
 #include "layer_options.h"
@@ -43,8 +45,16 @@ Result<void> put_outputs(const VerifyArgs& args, const job::VerifyInput& input,
       return Error{ErrorCode::usage, "--stl: there is no stock (--stock, or [stock] in the job)", {}};
     if (auto ok = session.put(args.stl, io::write_stl(result.removal->mesh())); !ok) return ok;
   }
-  (void)input;
-  return {};
+  if (session.common.html.empty()) return {};
+  view::VerifySceneOptions options;
+  options.title = std::filesystem::path(args.options.path).stem().string();
+  options.command_line = session.command_line;
+  options.program_name = std::filesystem::path(args.options.path).filename().string();
+  auto scene = view::verify_scene(input, &result, &session.diagnostics, options);
+  if (!scene) return scene.error();
+  auto page = view::viewer_page(*scene);
+  if (!page) return page.error();
+  return session.put(session.common.html, std::move(*page));
 }
 
 Result<void> run_verify_command(const VerifyArgs& args, Session& session) {
@@ -89,6 +99,7 @@ void add_inputs(CLI::App& app, VerifyArgs& args) {
              "of the stock (default: 1/200 of its longest side)");
   add_number(app, "--kerf", o.kerf_mm, kPositiveLength, "laser: width of the cut");
   add_layers(app, args.layers);
+  add_drawing(app, o.laser.side, o.laser.units, o.laser.join_mm);
 }
 
 }  // namespace

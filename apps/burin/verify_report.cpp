@@ -109,6 +109,15 @@ void fill_mill(const job::VerifyInput& input, const job::VerifyResult& result, S
   session.report.parameters["tools"] = tools_json(input.path);
 }
 
+/// The first few by name, for messages.
+std::string names_of(const job::VerifyInput& input, const std::vector<std::uint32_t>& outlines) {
+  constexpr std::size_t kMost = 8;
+  std::string text;
+  for (std::size_t i = 0; i < outlines.size() && i < kMost; ++i)
+    text += (i > 0 ? ", " : "") + input.outline_names[outlines[i]];
+  return outlines.size() <= kMost ? text : text + " and " + std::to_string(outlines.size() - kMost) + " more";
+}
+
 void fill_beam(const job::VerifyInput& input, const verify::BeamReport& b, double bound_mm,
                Session& session) {
   Json& q = session.report.quality;
@@ -118,12 +127,14 @@ void fill_beam(const job::VerifyInput& input, const verify::BeamReport& b, doubl
     q[key + "_max_mm"] = w.mm;
     q[key + "_at_mm"] = any ? Json({w.at.x, w.at.y, 0.0}) : Json(nullptr);
     q[key + "_move"] = any ? Json(w.move) : Json(nullptr);
+    q[key + "_line"] = any ? line_of(input, w.move) : Json(nullptr);
   };
   worst("gouge", b.gouge);
   q["gouge_area_mm2"] = b.gouge_area_mm2;
   worst("excess", b.excess);
   q["excess_mean_mm"] = b.excess_mean_mm;
   q["excess_area_mm2"] = b.excess_area_mm2;
+  worst("corner_excess", b.corner_excess);
   q["collisions"] = Json::array();
   q["spacing_mm"] = b.spacing_mm;
   q["bound_mm"] = bound_mm;
@@ -235,7 +246,8 @@ void judge_verify(const job::VerifyInput& input, const job::VerifyResult& result
                                      " mm2 are not machined: nothing cuts within --reach of them");
   if (result.beam && result.beam->uncut_mm > 0)
     session.diagnostics.left_out("uncut", mm(result.beam->uncut_mm) + " of " + mm(result.beam->outline_mm) +
-                                              " of the outlines are not cut");
+                                              " of the outlines are not cut (" +
+                                              names_of(input, result.beam->uncut_outlines) + ")");
 }
 
 std::string verify_csv(const job::VerifyResult& result) {
@@ -275,6 +287,9 @@ std::string verify_summary(const job::VerifyInput& input, const job::VerifyResul
               format_fixed(result.removal->stock_mm3() / 1000, 3) + " cm3\n";
   } else {
     text += "not cut      " + mm(result.beam->uncut_mm) + " of " + mm(result.beam->outline_mm) + "\n";
+    if (result.beam->corner_excess.mm > 0)
+      text +=
+          "corners      " + mm(result.beam->corner_excess.mm) + " at most, where the beam does not fit in\n";
   }
   return text + "the true worst values lie within " + mm(result.bound_mm) + "\n";
 }

@@ -25,7 +25,7 @@ export class Range {
   }
 }
 /** step: a value of the way that ends there, not of the place. */
-export interface Line { y: ArrayLike<number>; colour: string; dash?: boolean; step?: boolean }
+export interface Line { y: ArrayLike<number>; colour: string; dash?: boolean; step?: boolean; name?: string }
 export interface ChartOptions {
   name: string; unit: string; range: Range;
   x: () => ArrayLike<number>; xKind: () => "time" | "length" | "node";
@@ -46,7 +46,7 @@ export class Chart {
     const canvas = el("canvas", { "aria-hidden": "true" });
     this.plot.append(canvas, this.ghost, this.cursor);
     this.plot.tabIndex = 0; this.plot.setAttribute("role", "slider"); this.plot.setAttribute("aria-label", `${o.name} over time`);
-    this.box = el("div", {}, el("div", { class: "chart-head" }, el("b", {}, o.name), o.unit && el("span", { class: "soft" }, o.unit), this.value), this.plot);
+    this.box = el("div", {}, el("div", { class: "chart-head" }, ...(o.lines.length > 1 ? o.lines.map(l => { const b = el("b", {}, l.name ?? ""); b.style.color = `var(--${l.colour})`; return b; }) : [el("b", {}, o.name)]), o.unit && el("span", { class: "soft" }, o.unit), this.value), this.plot);
     this.again = sheet(canvas, s => this.draw(s)).again;
     o.range.on(() => { this.again(); this.place(); });
     new ResizeObserver(() => this.place()).observe(this.plot);

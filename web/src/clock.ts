@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time: advances while playing, and says which node of the path it is at.
 import type { Scene } from "./scene";
+import { motionOf } from "./seek";
 import type { Store } from "./state";
 
 /** Longest step of a frame, s: a page that slept does not leap. */
 const LONGEST_FRAME = 0.5;
 
-/** The last node whose time is not after t. */
-export function nodeAt(time: Float64Array, t: number): number {
-  let lo = 0, hi = time.length;
-  while (lo < hi) { const mid = (lo + hi) >> 1; if (time[mid]! <= t) lo = mid + 1; else hi = mid; }
-  return Math.max(0, lo - 1);
-}
-
-export function endTime(scene: Scene): number { return scene.path.count > 0 ? scene.path.time[scene.path.count - 1]! : 0; }
-
 export function startClock(scene: Scene, store: Store): void {
-  const end = endTime(scene);
+  const motion = motionOf(scene), end = motion.duration;
   let last = 0, running = false;
   const tick = (now: number): void => {
     const s = store.state;
@@ -35,6 +27,7 @@ export function startClock(scene: Scene, store: Store): void {
   });
   store.on(["time"], s => {
     const time = Number.isFinite(s.time) ? Math.min(end, Math.max(0, s.time)) : 0;
-    store.set({ time, node: nodeAt(scene.path.time, time) });
+    // Several nodes may have one time: who went to a node stays there.
+    store.set({ time, node: scene.path.time[s.node] === time ? s.node : motion.nodeAt(time) });
   });
 }

@@ -38,8 +38,8 @@ function table(scene: Scene, store: Store, stage: HTMLElement, help: () => void)
   add("Panels", ["/"], "search the program", () => { openPanel("program"); document.getElementById("program-search")?.focus(); });
   add("Page", ["Shift+T"], "theme", () => store.set({ theme: store.state.theme === "dark" ? "light" : store.state.theme === "light" ? "system" : "dark" }));
   add("Page", ["Shift+L"], "copy a link to this time", () => void copyLink(store));
-  add("Page", ["Shift+P"], "save the picture", () => savePicture(stage, scene));
-  add("Page", ["Escape"], "let go of what was picked", () => store.set({ picked: null, only: null, measuring: false, measured: [] }), "Esc");
+  add("Page", ["Shift+P"], "save the picture", () => savePicture(stage, scene, store));
+  add("Page", ["Escape"], "let go of what was picked", () => store.set({ picked: null, trial: null, only: null, measuring: false, measured: [] }), "Esc");
   add("Page", ["?"], "this help", help);
   return list;
 }
@@ -67,6 +67,8 @@ export function makeKeyboard(scene: Scene, store: Store, stage: HTMLElement): { 
     }
     dialog.showModal();
   };
+  // After a click with the pointer Space plays again, it does not press the button once more.
+  document.addEventListener("click", e => { if (e.detail > 0 && e.target instanceof Element) e.target.closest<HTMLElement>("button, summary, input[type=checkbox]")?.blur(); });
   document.addEventListener("keydown", e => {
     if (e.defaultPrevented || e.ctrlKey || e.metaKey || typing(e.target)) return;
     if (dialog?.open && e.key !== "?") return;

@@ -3,8 +3,9 @@
 import type { Scene } from "./scene";
 import type { Store } from "./state";
 import "./style.css";
-import { button, copy, el, icon, save, tell } from "./ui";
+import { button, copy, el, icon, save, tell, themed } from "./ui";
 import { count, duration, length } from "./logic/format";
+import { makeInspect } from "./inspect";
 import { makeKeyboard } from "./keyboard";
 import { makeLegend } from "./legend";
 import { PANELS } from "./panels";
@@ -26,7 +27,7 @@ function header(scene: Scene, store: Store, stage: HTMLElement, help: () => void
     el("h1", { title: scene.title }, scene.title || "burin"), scene.operation && el("span", { class: "badge" }, scene.operation), sums,
     el("div", { class: "actions" },
       button("link", "Copy a link to this time", () => void copyLink(store), { key: "Shift+L" }),
-      button("image", "Save the picture as PNG", () => savePicture(stage, scene), { key: "Shift+P" }), theme,
+      button("image", "Save the picture as PNG", () => savePicture(stage, scene, store), { key: "Shift+P" }), theme,
       button("help", "Keys and help", help, { key: "?" })));
 }
 export function copyLink(store: Store): Promise<void> {
@@ -35,36 +36,48 @@ export function copyLink(store: Store): Promise<void> {
   try { history.replaceState(null, "", url); } catch { /* not every place of a page lets it */ }
   return copy(url.href, "Link");
 }
-/** The stage draws when it is told to; its canvas is read before the browser shows the next frame. */
-export function savePicture(stage: HTMLElement, scene: Scene): void {
-  const canvas = stage.querySelector("canvas");
-  if (!canvas) { tell("There is no picture to save"); return; }
+/** The stage draws when it is told to; its canvas is read before the browser shows the next frame. A caption says what it is. */
+export function savePicture(stage: HTMLElement, scene: Scene, store: Store): void {
+  const canvas = stage.querySelector("canvas"), out = document.createElement("canvas"), g = out.getContext("2d");
+  if (!canvas || !g) { tell("There is no picture to save"); return; }
   stage.dispatchEvent(new CustomEvent("draw-now"));
-  canvas.toBlob(b => b ? save(b, `${(scene.title || "burin").replace(/[^\w.-]+/g, "_")}.png`) : tell("The picture could not be made"), "image/png");
+  const k = canvas.width / Math.max(1, stage.clientWidth), line = 26 * k;
+  out.width = canvas.width; out.height = canvas.height + line;
+  g.fillStyle = themed("panel"); g.fillRect(0, 0, out.width, out.height);
+  g.drawImage(canvas, 0, 0);
+  g.fillStyle = themed("ink"); g.font = `${12 * k}px system-ui, sans-serif`; g.textBaseline = "middle";
+  g.fillText([scene.title, scene.operation, scene.path.count > 1 ? duration(store.state.time) : ""].filter(t => t).join("   "), 10 * k, canvas.height + line / 2, out.width - 20 * k);
+  out.toBlob(b => b ? save(b, `${(scene.title || "burin").replace(/[^\w.-]+/g, "_")}.png`) : tell("The picture could not be made"), "image/png");
 }
 
-/** Tabs and their panels. A click on the open tab closes it. */
+/** Tabs and their panels. A click on the open tab closes it; a pinned panel stays above the one that is opened next. */
 function side(scene: Scene, store: Store): { panels: HTMLElement; rail: HTMLElement } {
   const panels = el("div", { class: "panels" }), rail = el("div", { class: "rail", role: "tablist", "aria-label": "Panels", "aria-orientation": "vertical" });
-  const all: { id: string; tab: HTMLButtonElement; box: HTMLElement }[] = [];
-  let open: string | null = null;
+  const all: { id: string; tab: HTMLButtonElement; box: HTMLElement; pin: HTMLElement }[] = [];
+  let open: string | null = null, pinned: string | null = null;
   const show = (id: string | null) => {
+    if (id !== null && id === pinned) return;
     open = id;
     for (const p of all) {
-      p.box.hidden = p.id !== id; p.tab.setAttribute("aria-selected", String(p.id === id));
-      p.tab.tabIndex = p.id === (id ?? all[0].id) ? 0 : -1;
+      const shown = p.id === open || p.id === pinned;
+      p.box.hidden = !shown; p.tab.setAttribute("aria-selected", String(shown)); p.pin.setAttribute("aria-pressed", String(p.id === pinned));
+      p.box.style.order = p.id === pinned ? "0" : "1";
+      p.tab.tabIndex = p.id === (open ?? pinned ?? all[0].id) ? 0 : -1;
     }
-    panels.hidden = id === null; document.documentElement.classList.toggle("closed", id === null);
+    const none = open === null && pinned === null;
+    panels.hidden = none; document.documentElement.classList.toggle("closed", none);
   };
+  const close = (id: string) => { if (pinned === id) pinned = null; show(open === id ? null : open); };
   for (const panel of PANELS) {
     const content = panel.make(scene, store);
     if (!content) continue;
     const id = panel.id, faults = id === "findings" ? scene.findings.filter(f => f.level > 0).length : 0;
-    const tab = el("button", { type: "button", role: "tab", id: `tab-${id}`, "aria-controls": `panel-${id}`, onclick: () => show(open === id ? null : id) },
+    const tab = el("button", { type: "button", role: "tab", id: `tab-${id}`, "aria-controls": `panel-${id}`, onclick: () => open === id || pinned === id ? close(id) : show(id) },
       icon(id), el("span", {}, panel.title), faults > 0 && el("b", { class: "badge" }, faults > 999 ? "999+" : String(faults)));
+    const pin = button("pin", "Keep it open: the next panel opens below", () => { if (pinned === id) { pinned = null; show(id); } else { const other = pinned; pinned = id; show(open === id ? other : open); } });
     const box = el("section", { class: "panel", role: "tabpanel", id: `panel-${id}`, "aria-labelledby": `tab-${id}` },
-      el("div", { class: "panel-head" }, el("h2", {}, panel.title), button("close", "Close the panel", () => show(null))), content);
-    all.push({ id, tab, box }); rail.append(tab); panels.append(box);
+      el("div", { class: "panel-head" }, el("h2", {}, panel.title), pin, button("close", "Close the panel", () => close(id))), content);
+    all.push({ id, tab, box, pin }); rail.append(tab); panels.append(box);
   }
   rail.addEventListener("keydown", e => {
     const d = e.key === "ArrowDown" || e.key === "ArrowRight" ? 1 : e.key === "ArrowUp" || e.key === "ArrowLeft" ? -1 : 0;
@@ -115,6 +128,7 @@ function applyTheme(store: Store): void {
 export function makeLayout(app: HTMLElement, scene: Scene, store: Store): { stage: HTMLElement } {
   applyTheme(store);
   const stage = el("div", { class: "stage" }), keys = makeKeyboard(scene, store, stage), { panels, rail } = side(scene, store);
+  stage.append(makeInspect(scene, store));
   const view = el("main", { class: "view", "aria-label": "Part and tool path" }, makeToolbar(scene, store), stage, makeLegend(scene, store));
   app.classList.add("app");
   app.replaceChildren(header(scene, store, stage, keys.help), view, splitter(), panels, rail, makeTimeline(scene, store));

@@ -13,12 +13,12 @@ export function motionOf(scene: Scene): Motion {
 }
 export function goTime(scene: Scene, store: Store, time: number): void {
   const m = motionOf(scene), t = Math.min(m.duration, Math.max(0, Number.isFinite(time) ? time : 0));
-  store.set({ time: t, node: m.nodeAt(t), picked: null });
+  store.set({ time: t, node: m.nodeAt(t), picked: null, trial: null });
 }
 export function goNode(scene: Scene, store: Store, node: number): void {
   if (scene.path.count === 0) return;
   const n = Math.min(scene.path.count - 1, Math.max(0, node));
-  store.set({ time: scene.path.time[n], node: n, picked: null });
+  store.set({ time: scene.path.time[n], node: n, picked: null, trial: null });
 }
 /** What panels speak of: the picked node, else the current one. */
 export const focus = (store: Store): number => store.state.picked ?? store.state.node;

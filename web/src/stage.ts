@@ -126,7 +126,7 @@ export class Stage {
 
   private connect(canvas: HTMLCanvasElement): void {
     const { store, view } = this, on = (keys: (keyof State)[], call: (s: Readonly<State>) => void): void => store.on(keys, s => { call(s); this.invalidate(); });
-    on(["time", "node", "playing", "show"], () => { this.path.update(); this.tool.update(); this.turnTable(); this.stock.update(); });
+    on(["time", "node", "playing", "show", "trial"], () => { this.path.update(); this.tool.update(); this.turnTable(); this.stock.update(); });
     on(["show"], () => { this.part.update(); this.outlines.update(); });
     on(["colour", "range", "only"], () => this.path.recolour());
     on(["heat", "heatRange"], () => { this.part.update(); this.outlines.update(); });

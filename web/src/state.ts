@@ -9,6 +9,7 @@ export interface State {
   node: number; // of the path, the one at or before `time`
   picked: number | null; // node the user chose
   hovered: number | null;
+  trial: { tip: [number, number, number]; axis: [number, number, number] } | null; // the tool is shown there instead; part coordinates
   colour: string; // "kind" | "group" | "feed" | "series:K" | "plain"
   range: [number, number] | null; // of the colours of feed or a series; null: from what is there
   heat: boolean; // deviation on the part
@@ -51,7 +52,7 @@ export class Store {
 
 export function initialState(): State {
   return {
-    time: 0, playing: false, speed: 1, node: 0, picked: null, hovered: null, colour: "kind", range: null, heat: false, heatRange: 0, only: null,
+    time: 0, playing: false, speed: 1, node: 0, picked: null, hovered: null, trial: null, colour: "kind", range: null, heat: false, heatRange: 0, only: null,
     show: { part: true, path: true, rapids: true, tool: true, holder: true, stock: false, obstacles: true, ahead: true },
     view: null, perspective: false, asMachine: false, section: { on: false, axis: 0, at: 0, flip: false }, measuring: false, measured: [], lookAt: null, theme: "system",
   };

@@ -15,7 +15,7 @@ export function el<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: At
 }
 
 const ICONS: Record<string, string> = {
-  up: "M3 10l5-5 5 5", down: "M3 6l5 5 5-5",
+  pin: "M5.5 2h5l-.6 4.5 2.1 2.5H4l2.1-2.5zM8 9v5", up: "M3 10l5-5 5 5", down: "M3 6l5 5 5-5",
   play: "M4.5 2.8v10.4l8.6-5.2z", pause: "M4.5 3v10M11.5 3v10", back: "M10 3L5 8l5 5", on: "M6 3l5 5-5 5",
   moveBack: "M12 3L7 8l5 5M7.5 3l-5 5 5 5", moveOn: "M4 3l5 5-5 5M8.5 3l5 5-5 5", passBack: "M12.5 3l-6 5 6 5zM3.5 3v10", passOn: "M3.5 3l6 5-6 5zM12.5 3v10",
   fit: "M2 6V2h4M10 2h4v4M14 10v4h-4M6 14H2v-4M6 6h4v4H6z", iso: "M8 1.8l5.5 3.1v6.2L8 14.2l-5.5-3.1V4.9zM2.5 4.9L8 8l5.5-3.1M8 8v6.2",
@@ -46,7 +46,10 @@ export function setIcon(b: HTMLElement, name: string, label: string, key = ""): 
 export function choice(label: string, options: [string, string][], value: string, act: (value: string) => void): HTMLSelectElement {
   const s = el("select", { "aria-label": label, title: label }, ...options.map(([v, t]) => el("option", { value: v }, t)));
   s.value = value;
-  s.addEventListener("change", () => act(s.value));
+  let pointed = false; // chosen with the pointer, the keys are the page's again
+  s.addEventListener("pointerdown", () => { pointed = true; });
+  s.addEventListener("keydown", () => { pointed = false; });
+  s.addEventListener("change", () => { act(s.value); if (pointed) s.blur(); });
   return s;
 }
 export function check(text: string, on: boolean, act: (on: boolean) => void): { box: HTMLLabelElement; input: HTMLInputElement } {

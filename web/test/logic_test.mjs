@@ -11,11 +11,11 @@ import { build } from "esbuild";
 const out = mkdtempSync(join(tmpdir(), "burin-logic-"));
 after(() => rmSync(out, { recursive: true, force: true }));
 const source = name => fileURLToPath(new URL(`../src/logic/${name}.ts`, import.meta.url));
-const names = ["bands", "contours", "decimate", "format", "groups", "histogram", "kerf", "listing", "motion", "section"];
+const names = ["bands", "contours", "decimate", "format", "groups", "histogram", "kerf", "listing", "motion", "orient", "section"];
 await build({ entryPoints: names.map(source), outdir: out, bundle: true, format: "esm", outExtension: { ".js": ".mjs" }, logLevel: "error" });
 const load = async name => import(pathToFileURL(join(out, `${name}.mjs`)).href);
 const { bands } = await load("bands"), { contours, levelsFor, bilinear } = await load("contours"), { decimate, extent } = await load("decimate"), F = await load("format");
-const { groupSums } = await load("groups"), { shares } = await load("histogram"), K = await load("kerf"), L = await load("listing"), { Motion, lastAtMost } = await load("motion"), S = await load("section");
+const { groupSums } = await load("groups"), { shares } = await load("histogram"), K = await load("kerf"), L = await load("listing"), { Motion, lastAtMost } = await load("motion"), S = await load("section"), O = await load("orient");
 
 let seed = 12345;
 const random = () => (seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0) / 2 ** 32; // the same numbers every time
@@ -264,4 +264,15 @@ test("kerf: lines and arcs of a contour join, whichever way each of them runs", 
   let area = 0;
   for (let i = 0, n = loop.point.length / 3; i < n; ++i) { const j = (i + 1) % n; area += (loop.point[3 * i] * loop.point[3 * j + 1] - loop.point[3 * j] * loop.point[3 * i + 1]) / 2; }
   near(Math.abs(area), 105, 0.01);
+});
+test("other angles of a contact point: the tool still touches it, and comes back", () => {
+  const R = 6, r = 1.5, f = S.unit([0.6, 0.3, 0.1]), n = S.unit(S.cross(f, [0.2, -1, 0.4])), P = [10, -4, 3], rad = v => v * Math.PI / 180;
+  const stand = (tilt, yaw) => { const t = S.cross(n, f), d = S.sum(f.map(v => v * Math.cos(rad(yaw))), t, Math.sin(rad(yaw))), axis = S.sum(n.map(v => v * Math.cos(rad(tilt))), d, Math.sin(rad(tilt)));
+    // The middle of the corner's circle is r above the contact; from there inwards across the axis to its foot, and down.
+    const inward = S.unit(S.sum(n, axis, -S.dot(n, axis))), middle = S.sum(P, n, r); return { axis, tip: S.sum(S.sum(middle, inward, R - r), axis, -r) }; };
+  for (const [a, b] of [[[10, 0], [25, 40]], [[15, -30], [3, 120]], [[30, 80], [30, 80]], [[5, 10], [45, -90]]]) {
+    const got = O.standingAt(stand(...a), f, a, b, R, r), want = stand(...b);
+    for (let k = 0; k < 3; ++k) { near(got.tip[k], want.tip[k], 1e-9, `${a} to ${b}`); near(got.axis[k], want.axis[k], 1e-9); }
+  }
+  assert.equal(O.standingAt(stand(10, 0), f, [40, 0], [5, 0], R, r), null); // not the pose of those angles
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scenes made by JavaScript for the tests of the page, written down as docs/viewer.md says (independent of the C++ writer).
-//   node test/sample.mjs OUTDIR [NAME...]     pages from dist/index.html
+//   node test/sample.mjs OUTDIR [NAME...]     pages from data/pages/viewer.html
 import { deflateSync } from "node:zlib";
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -76,7 +76,7 @@ export function container(s) {
   return Buffer.concat([head, directory, ...c.data]);
 }
 
-export function page(bytes, shell = readFileSync(new URL("../dist/index.html", import.meta.url), "utf8"), title = "sample") {
+export function page(bytes, shell = readFileSync(new URL("../../data/pages/viewer.html", import.meta.url), "utf8"), title = "sample") {
   const put = { SCENE: bytes.toString("base64"), TITLE: title };
   return shell.replace(/@(SCENE|TITLE)@/g, (_, name) => put[name]);
 }

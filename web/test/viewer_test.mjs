@@ -6,11 +6,11 @@ import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { launch, look, missing, open } from "./browser.mjs";
 
-const [burin, source, shots] = process.argv.slice(2);
+const [burin, source, shots] = process.argv.slice(2).map(path => resolve(path));
 const reason = await missing();
 if (reason) { console.log("left out: " + reason); process.exit(77); }
 
@@ -84,7 +84,7 @@ test("a click on the path picks a segment near it", async browser => {
       if (path.kind[i] !== 1) continue;
       const p = [0, 1, 2].map(k => (path.point[3 * i + k] + path.point[3 * i - 3 + k]) / 2 + window.burin.scene.center[k]);
       const q = window.burin.stage.project(p);
-      if (q) return { x: q[0], y: q[1], node: i };
+      if (q) return { ...q, node: i };
     }
     return null;
   });
@@ -96,9 +96,9 @@ test("a click on the path picks a segment near it", async browser => {
   const far = await o.page.evaluate(({ x, y, picked }) => {
     const { path, center } = window.burin.scene;
     const at = i => window.burin.stage.project([0, 1, 2].map(k => path.point[3 * i + k] + center[k]));
-    const [a, b] = [at(picked - 1), at(picked)], d = [b[0] - a[0], b[1] - a[1]], l = d[0] * d[0] + d[1] * d[1];
-    const t = l > 0 ? Math.min(1, Math.max(0, ((x - a[0]) * d[0] + (y - a[1]) * d[1]) / l)) : 0;
-    return Math.hypot(a[0] + t * d[0] - x, a[1] + t * d[1] - y);
+    const a = at(picked - 1), b = at(picked), dx = b.x - a.x, dy = b.y - a.y, l = dx * dx + dy * dy;
+    const t = l > 0 ? Math.min(1, Math.max(0, ((x - a.x) * dx + (y - a.y) * dy) / l)) : 0;
+    return Math.hypot(a.x + t * dx - x, a.y + t * dy - y);
   }, { ...hit, picked });
   assert(far < 8, `${far} pixels`);
   assert.deepEqual(o.faults, []);

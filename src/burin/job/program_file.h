@@ -14,21 +14,13 @@
 
 namespace burin::job {
 
-enum class ProgramKind {
-  cl,          ///< APT words with '/'
-  nc,          ///< words of a letter and a number
-  heidenhain,  ///< conversational: a dialect of its own
-  unknown,
-};
-/// By the first lines that say something.
-ProgramKind kind_of_program(std::string_view text);
-
 struct ProgramFile {
   cl::Program program;
   bool is_nc = false;
   /// NC of a machine with rotary axes: by motion; tip_straight: under G43.4.
   std::vector<kinematics::Joints> joints;
   std::vector<bool> tip_straight;
+  std::vector<bool> unknown;  ///< NC: by motion, where it ends is the machine's
   /// Tools that comments describe as some CAM systems write them: "(T1 D=6. CR=3. - ...)".
   std::map<int, cl::ToolChange> described;
 };

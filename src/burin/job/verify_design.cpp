@@ -6,10 +6,9 @@
 #include <string_view>
 #include <utility>
 
-#include "burin/base/text.h"
 #include "burin/io/stl/stl.h"
 #include "burin/job/face_mesh.h"
-#include "burin/job/program_file.h"
+#include "burin/job/file_kind.h"
 #include "burin/job/verify_tools.h"
 #include "burin/nc/surface_program.h"
 
@@ -23,13 +22,14 @@ constexpr double kTolerance_mm = 0.01;
 // Share of the tolerance by which triangles of rotational parts may leave them.
 constexpr double kRotaryShare = 1.0 / 20;
 
-/// The triangles from `first` to `last` with the vertices they use, in the order of first use.
-Mesh cut_out(const Mesh& mesh, std::size_t first, std::size_t last) {
+/// The triangles that `chosen` says, with the vertices they use, in the order of first use.
+template <class Chosen>
+Mesh cut_out(const Mesh& mesh, const Chosen& chosen) {
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::vector<std::uint32_t> place(mesh.vertices.size(), kNone);
   Mesh out;
-  out.triangles.reserve(last - first);
-  for (std::size_t i = first; i < last; ++i) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!chosen(i)) continue;
     std::array<std::uint32_t, 3> t = mesh.triangles[i];
     for (std::uint32_t& v : t) {
       if (place[v] == kNone) {
@@ -54,9 +54,12 @@ Result<void> load_rotary(const VerifyTables& tables, const FileSource& read, Ver
   job.options.tolerance_mm = *out.tolerance_mm * kRotaryShare / share;
   auto part = load_rotary_part(job, out.folder, read, diagnostics);
   if (!part) return part.error();
-  out.machined = machined_triangles(*part);
+  // Beside a rim that is cut within the tolerance, an end face has lost much along its own normal: what is
+  // not machined is only not to be touched.
+  const std::vector<bool> machined = machined_triangles(*part);
   out.deflection_mm = part->deflection_mm;
-  out.design = std::move(part->mesh);
+  out.design = cut_out(part->mesh, [&](std::size_t t) { return machined[t]; });
+  out.obstacles = cut_out(part->mesh, [&](std::size_t t) { return !machined[t]; });
   return {};
 }
 
@@ -66,8 +69,9 @@ Result<void> load_faces(OrientJobFile job, const FileSource& read, VerifyDesign&
   auto part = load_orient_part(job, out.folder, read, diagnostics);
   if (!part) return part.error();
   out.deflection_mm = part->deflection_mm;
-  out.design = cut_out(part->mesh, 0, part->design_triangles);
-  out.obstacles = cut_out(part->mesh, part->design_triangles, part->mesh.triangles.size());
+  const std::size_t design = part->design_triangles;
+  out.design = cut_out(part->mesh, [=](std::size_t t) { return t < design; });
+  out.obstacles = cut_out(part->mesh, [=](std::size_t t) { return t >= design; });
   return {};
 }
 
@@ -145,22 +149,6 @@ Result<void> load_surfaces(const std::string& text, const std::string& path, Ver
   return {};
 }
 
-// --- by content
-
-enum class DesignKind { job, cad, stl, surfaces };
-
-DesignKind kind_of_design(const std::string& path, std::string_view bytes) {
-  const std::string extension = to_lower(fs::path(path).extension().string());
-  if (extension == ".toml") return DesignKind::job;
-  if (extension == ".stl") return DesignKind::stl;
-  for (const char* cad : {".step", ".stp", ".iges", ".igs"})
-    if (extension == cad) return DesignKind::cad;
-  const std::string_view head = trim(bytes.substr(0, std::min<std::size_t>(bytes.size(), 4096)));
-  if (head.starts_with("ISO-10303-21")) return DesignKind::cad;
-  if (head.starts_with("solid") || bytes.find('\0') != std::string_view::npos) return DesignKind::stl;
-  return DesignKind::surfaces;
-}
-
 }  // namespace
 
 Result<Mesh> load_stl(const std::string& path, const FileSource& read, Diagnostics& diagnostics) {
@@ -182,17 +170,19 @@ Result<VerifyDesign> load_verify_design(const std::string& path, std::optional<d
     return file == (fs::path(out.folder) / name).string() ? *bytes : read(file);
   };
   Result<void> loaded;
-  switch (kind_of_design(path, *bytes)) {
-    case DesignKind::job:
+  const FileKind kind = kind_of_file(*bytes, path);
+  switch (kind) {
+    case FileKind::job:
       loaded = load_job(*bytes, path, read, out, diagnostics);
       break;
-    case DesignKind::surfaces:
+    case FileKind::nc:
       loaded = load_surfaces(*bytes, path, out, diagnostics);
       break;
-    case DesignKind::cad:
-    case DesignKind::stl: {
+    case FileKind::step:
+    case FileKind::iges:
+    case FileKind::stl: {
       OrientJobFile job;
-      if (kind_of_design(path, *bytes) == DesignKind::stl)
+      if (kind == FileKind::stl)
         job.part = OrientMesh{name, false};
       else
         job.part = OrientSurface{name, {}, false};
@@ -200,6 +190,11 @@ Result<VerifyDesign> load_verify_design(const std::string& path, std::optional<d
       loaded = load_faces(std::move(job), once, out, diagnostics);
       break;
     }
+    default:
+      loaded = Error{ErrorCode::syntax,
+                     "no design but " + std::string(describe(kind)) +
+                         " (a job file, STEP, IGES, STL, a surface program; DXF or SVG with --kerf)",
+                     {}};
   }
   if (!loaded) {
     Error error = loaded.error();

@@ -20,7 +20,6 @@ struct VerifyDesign {
   std::string operation;  ///< "rotary", "orient", "cycle" or ""
   std::string folder;     ///< that paths are relative to
   geom::Mesh design, obstacles;
-  std::vector<bool> machined;
   double deflection_mm = 0;
   std::vector<JobTool> tools;
   std::map<int, cl::ToolChange> described;  ///< by the surface program; a diameter of 0: by two at once

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "burin/base/text.h"
+#include "burin/job/file_kind.h"
 #include "burin/job/machine_file.h"
 #include "burin/job/program_file.h"
 #include "burin/job/verify_design.h"
@@ -34,7 +35,6 @@ class Reader {
     if (auto ok = stock(); !ok) return ok.error();
     in_.operation = design_.operation;
     in_.obstacles = std::move(design_.obstacles);
-    in_.machined = std::move(design_.machined);
     in_.deflection_mm = design_.deflection_mm;
     in_.tolerance_mm = *design_.tolerance_mm;
     in_.design = std::move(design_.design);
@@ -55,12 +55,15 @@ class Reader {
     if (!program) return program.error();
     in_.operation = "laser";
     in_.outlines = std::move(outlines->outlines);
+    in_.outline_names = std::move(outlines->names);
     in_.deflection_mm = outlines->bound_mm;
     in_.kerf_mm = *options_.kerf_mm;
     in_.tolerance_mm = options_.tolerance_mm.value_or(in_.tolerance_mm);
     in_.program = std::move(*program);
-    in_.program_is_nc = kind_of_program(*text) == ProgramKind::nc;
+    in_.program_is_nc = kind_of_file(*text, options_.path) == FileKind::nc;
     in_.program_text = std::move(*text);
+    for (std::uint32_t r = 0; r < in_.program.records.size(); ++r)
+      if (cl::is_motion(in_.program.records[r])) in_.path.moves.push_back(origin_of(r));
     return std::move(in_);
   }
 
@@ -90,7 +93,8 @@ class Reader {
     in_.program = std::move(file->program);
     in_.program_is_nc = file->is_nc;
     in_.joints = std::move(file->joints);
-    tip_straight_ = std::move(file->tip_straight);
+    in_.tip_straight = std::move(file->tip_straight);
+    moving_.unknown = std::move(file->unknown);
     design_.described.merge(file->described);
     in_.program_text = std::move(*text);
     return {};
@@ -104,10 +108,10 @@ class Reader {
                      std::move(design_.described), box.diagonal(), diagnostics_);
     tools.program(in_.program);
     const verify::ToolSource source = [&tools](const cl::ToolChange& change) { return tools(change); };
-    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, tip_straight_,
-                                                                *in_.machine, source, {})
+    auto path = !in_.joints.empty() ? verify::make_checked_path(in_.program, in_.joints, in_.tip_straight,
+                                                                *in_.machine, source, moving_)
                 : as_joints()       ? posted(source)
-                                    : verify::make_checked_path(in_.program, source, {});
+                                    : verify::make_checked_path(in_.program, source, moving_);
     if (!path) {
       Error error = path.error();
       if (error.where.line > 0) error.where.file = options_.path;
@@ -122,6 +126,12 @@ class Reader {
     const bool rotary = in_.machine && in_.machine->rotary_count() > 0;
     return rotary && !in_.program_is_nc && !options_.tcp &&
            (options_.joints || design_.operation == "rotary");
+  }
+
+  verify::MoveOrigin origin_of(std::uint32_t record) const {
+    const std::uint32_t line = in_.program.source[record];
+    return {record, line == cl::Program::kNoSource ? 0 : line,
+            std::holds_alternative<cl::Rapid>(in_.program.records[record])};
   }
 
   /// The moves as a control without tool-centre-point control gets them; what is found is said of the CL
@@ -150,11 +160,9 @@ class Reader {
         in_.joints.push_back(moves[next].to);
         move_of.push_back(static_cast<std::uint32_t>(origins.size()));
       }
-      const std::uint32_t line = in_.program.source[r];
-      origins.push_back(
-          {r, line == cl::Program::kNoSource ? 0 : line, std::holds_alternative<cl::Rapid>(record)});
+      origins.push_back(origin_of(r));
     }
-    auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, {});
+    auto path = verify::make_checked_path(program, in_.joints, {}, *in_.machine, source, moving_);
     in_.joints.clear();  // they do not belong to the motions of the program one by one
     if (!path) return path;
     for (verify::ToolPath& tool : path->tools)
@@ -205,7 +213,7 @@ class Reader {
   Diagnostics& diagnostics_;
   VerifyDesign design_;
   VerifyInput in_;
-  std::vector<bool> tip_straight_;
+  verify::PathOptions moving_;
 };
 
 // --- running

@@ -50,11 +50,13 @@ struct VerifyInput {
   bool program_is_nc = false;
   std::optional<kinematics::Kinematics> machine;
   std::vector<kinematics::Joints> joints;  ///< by motion; empty: poses
+  std::vector<bool> tip_straight;          ///< the same, under G43.4
   geom::Mesh design, obstacles;
-  std::vector<bool> machined;             ///< a triangle; empty: all
-  std::vector<geom::Vec3> normals;        ///< a vertex of design; empty: of triangles
-  double deflection_mm = 0;               ///< of the design's triangles
-  std::vector<verify::Outline> outlines;  ///< laser
+  std::vector<bool> machined;              ///< a triangle; empty: all
+  std::vector<geom::Vec3> normals;         ///< a vertex of design; empty: of triangles
+  double deflection_mm = 0;                ///< of the design's triangles
+  std::vector<verify::Outline> outlines;   ///< laser
+  std::vector<std::string> outline_names;  ///< what the drawing calls them
   double kerf_mm = 0;
   std::optional<removal::Stock> stock;
   double tolerance_mm = 0.01;

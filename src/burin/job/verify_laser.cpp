@@ -174,23 +174,28 @@ Result<io::Drawing> read_drawing(std::string_view bytes, const std::string& file
   return Error{ErrorCode::usage, "is of no known kind (a drawing named .dxf or .svg)", {.file = file}};
 }
 
-Result<LaserOutlines> read_laser_outlines(std::string_view bytes, const std::string& file,
-                                          const LaserOutlineOptions& options, Diagnostics& diagnostics) {
+Result<LaserOutlines> make_laser_outlines(const io::Drawing& drawing, const LaserOutlineOptions& options,
+                                          Diagnostics& diagnostics) {
   if (!(options.curve_mm > 0) || !(options.join_mm >= 0))
     return Error{
         ErrorCode::usage, "impossible lengths for the outlines (join 0 or more, curves above 0 mm)", {}};
   try {
-    auto drawing = read_drawing(bytes, file, options.units, diagnostics);
-    if (!drawing) return drawing.error();
-    auto outlines = outlines_of(*drawing, options, diagnostics);
-    diagnostics.locate(file);
-    if (outlines) return outlines;
-    Error error = outlines.error();
-    if (error.where.file.empty()) error.where.file = file;
-    return error;
+    return outlines_of(drawing, options, diagnostics);
   } catch (const std::exception& e) {  // memory
     return Error{ErrorCode::range, std::string("the outlines do not fit into memory: ") + e.what(), {}};
   }
+}
+
+Result<LaserOutlines> read_laser_outlines(std::string_view bytes, const std::string& file,
+                                          const LaserOutlineOptions& options, Diagnostics& diagnostics) {
+  auto drawing = read_drawing(bytes, file, options.units, diagnostics);
+  if (!drawing) return drawing.error();
+  auto outlines = make_laser_outlines(*drawing, options, diagnostics);
+  diagnostics.locate(file);
+  if (outlines) return outlines;
+  Error error = outlines.error();
+  if (error.where.file.empty()) error.where.file = file;
+  return error;
 }
 
 Result<cl::Program> read_laser_program(std::string_view bytes, const std::string& file,

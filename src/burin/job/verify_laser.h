@@ -44,6 +44,8 @@ Result<io::Drawing> read_drawing(std::string_view bytes, const std::string& file
 /// (geometry).
 Result<LaserOutlines> read_laser_outlines(std::string_view bytes, const std::string& file,
                                           const LaserOutlineOptions& options, Diagnostics& diagnostics);
+Result<LaserOutlines> make_laser_outlines(const io::Drawing& drawing, const LaserOutlineOptions& options,
+                                          Diagnostics& diagnostics);
 /// CL or NC, told by content; S, M3 and M4 are the beam.
 Result<cl::Program> read_laser_program(std::string_view bytes, const std::string& file,
                                        Diagnostics& diagnostics);

@@ -15,6 +15,7 @@ Result<cl::Program> read(std::string_view text, const InterpretOptions& options,
     if (moves && cl::is_motion(record)) {
       moves->joints.push_back(reader->joints());
       moves->tip_straight.push_back(reader->state().tool_centre);
+      moves->unknown.push_back(std::holds_alternative<cl::Rapid>(record) && !reader->placed());
     }
     program.add(std::move(record), static_cast<std::uint32_t>(line));
   });

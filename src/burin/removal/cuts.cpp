@@ -11,32 +11,8 @@ using geom::Point3;
 using geom::Vec3;
 using verify::Body;
 
-// An axis may be so far from a unit vector; axes nearer to opposite than this have no great circle.
-constexpr double kUnit = 1e-6, kOpposite = 1e-9;
 // An axis so near to +Z (sine) stands upright: over 100 mm it leans by 1e-5 mm.
 constexpr double kUpright = 1e-7;
-
-Result<void> check(const verify::CheckedMill& tool) {
-  const auto wrong = [](const std::string& what) { return Error{ErrorCode::range, what, {}}; };
-  const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
-  if (!positive(tool.radius) || !positive(tool.length))
-    return wrong("radius and length of the cutter must be positive");
-  if (!(tool.corner_radius >= 0 && tool.corner_radius <= std::min(tool.radius, tool.length)))
-    return wrong("the corner radius does not fit the cutter (0 to radius and length)");
-  for (const verify::ToolCylinder& c : tool.cylinders)
-    if (!positive(c.radius) || !std::isfinite(c.from) || !std::isfinite(c.to) || !(c.from < c.to))
-      return wrong("a cylinder of the tool has no volume (radius > 0, from < to)");
-  return {};
-}
-
-Result<void> check(const cl::Pose& pose, std::uint32_t move) {
-  const auto wrong = [&](const std::string& what) {
-    return Error{ErrorCode::geometry, "move " + std::to_string(move) + ": " + what, {}};
-  };
-  if (!is_finite(pose.tip) || !is_finite(pose.axis)) return wrong("a pose that is not finite");
-  if (std::abs(norm(pose.axis) - 1) > kUnit) return wrong("the tool axis is no unit vector (length 1)");
-  return {};
-}
 
 /// Of a cylinder from height `low` to `high` that stands at `at`.
 geom::Box3 box_of(const verify::MillBody& body, const verify::Placed& at) {
@@ -66,25 +42,6 @@ double reach(const Cut& cut) {
 }
 
 }  // namespace
-
-Result<void> validate(const verify::CheckedPath& path) {
-  for (const verify::ToolPath& tool : path.tools) {
-    if (auto ok = check(tool.tool); !ok) return ok.error();
-    const cl::Pose* from = &tool.from;
-    if (tool.pieces.empty()) continue;
-    if (auto ok = check(*from, tool.pieces.front().move); !ok) return ok.error();
-    for (const verify::PathPiece& piece : tool.pieces) {
-      if (auto ok = check(piece.to, piece.move); !ok) return ok.error();
-      if (dot(from->axis, piece.to.axis) < 0 && norm(cross(from->axis, piece.to.axis)) < kOpposite)
-        return Error{ErrorCode::geometry,
-                     "move " + std::to_string(piece.move) +
-                         ": the axis turns by half a turn, which no great circle decides (put a pose between)",
-                     {}};
-      from = &piece.to;
-    }
-  }
-  return {};
-}
 
 bool is_upright(const verify::CheckedPath& path) {
   const auto upright = [](const cl::Pose& p) {
@@ -155,16 +112,19 @@ void CutSource::add(std::vector<Cut>& out, const Motion& motion, const verify::P
       box.add(box_of(p.body, {motion.tip + t * motion.way, axis}));
     }
     // What a turning axis leaves between its ends, and rounding to single precision.
-    box = box.grown((motion.turns ? tolerance_ : 0) + 1e-6 * std::max({grid_.length(0), grid_.length(1), grid_.length(2)}));
+    box = box.grown((motion.turns ? tolerance_ : 0) +
+                    1e-6 * std::max({grid_.length(0), grid_.length(1), grid_.length(2)}));
     Cut cut{motion, {}, p.body, p.kind, piece.rapid || p.kind != Body::cutter, piece.move, 0};
     bool reaches = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double lo = std::max(component(box.lo, i), 0.0), hi = std::min(component(box.hi, i), grid_.length(i));
+      const double lo = std::max(component(box.lo, i), 0.0),
+                   hi = std::min(component(box.hi, i), grid_.length(i));
       reaches = reaches && lo < hi;
       cut.box.lo[i] = static_cast<float>(lo), cut.box.hi[i] = static_cast<float>(hi);
     }
     if (!reaches) continue;
-    cut.reach = std::min(reach(cut), std::hypot(p.body.radius, std::max(std::abs(p.body.low), std::abs(p.body.high))));
+    cut.reach = std::min(reach(cut),
+                         std::hypot(p.body.radius, std::max(std::abs(p.body.low), std::abs(p.body.high))));
     out.push_back(cut);
   }
 }

@@ -34,8 +34,6 @@ struct Cut {
   double reach = 0;  ///< no place of the piece inside the stock is farther from the tip
 };
 
-/// Errors: tools and poses that are impossible (range, geometry; names the move).
-Result<void> validate(const verify::CheckedPath& path);
 /// Do all tools stand along +Z all the time?
 bool is_upright(const verify::CheckedPath& path);
 

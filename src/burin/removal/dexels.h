@@ -37,6 +37,14 @@ struct Grid {
 
   double node(std::size_t axis, double i) const { return component(origin, axis) + (i + 0.5) * step[axis]; }
   double length(std::size_t axis) const { return step[axis] * count[axis]; }
+  /// Nodes from first to before second that lie in [lo, hi) above the corner.
+  std::array<std::uint32_t, 2> nodes_in(std::size_t axis, float lo, float hi) const {
+    const auto first = [&](float h) {
+      const double i = std::ceil(static_cast<double>(h) / step[axis] - 0.5);
+      return static_cast<std::uint32_t>(std::clamp<double>(i, 0, count[axis]));
+    };
+    return {first(lo), first(hi)};
+  }
 };
 
 class Tile {

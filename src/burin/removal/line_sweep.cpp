@@ -46,8 +46,8 @@ int Motion::parts(const verify::Stretch& stretch, double span, double tolerance)
   const double bend = (span * turn * turn + 2 * turn * norm(stretch.way)) / 8;
   // Normals turn, too: more than this at once and tangents no longer say where the envelope is.
   constexpr double kTurn = 0.05;
-  return static_cast<int>(std::clamp(
-      std::ceil(std::max(std::sqrt(bend / tolerance), turn / kTurn)), 1.0, double{kMostParts}));
+  return static_cast<int>(
+      std::clamp(std::ceil(std::max(std::sqrt(bend / tolerance), turn / kTurn)), 1.0, double{kMostParts}));
 }
 
 LineSweep::LineSweep(const verify::MillBody& body, const Motion& motion, std::size_t along, double tolerance,
@@ -367,8 +367,7 @@ void LineSweep::rounded_edge(const Frame& f, const Place& p, Covered& out) const
 Vec3 LineSweep::normal(const Frame& f, double h, double time) const {
   const Place p = place(f, du_, dv_);
   const double along = h - tip_h_;
-  const Place at{p.x + along * f.e1 - time * f.w1, p.y + along * f.e2,
-                 p.z + along * f.e3 - time * f.w3};
+  const Place at{p.x + along * f.e1 - time * f.w1, p.y + along * f.e2, p.z + along * f.e3 - time * f.w3};
   const double rho = std::hypot(at.x, at.y);
   const Vec3 aside = rho > 0 ? (at.x / rho) * f.first + (at.y / rho) * f.second : f.first;
   const double out = rho - (body_.radius - body_.corner), down = body_.low + body_.corner - at.z;

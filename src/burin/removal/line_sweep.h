@@ -39,8 +39,8 @@ struct Covered {
   }
 };
 
-/// One piece of a tool, one motion, no place farther than `reach` from the tip of interest, lines along the coordinate axis `along`; a line is named by its places
-/// on the next axes u and v.
+/// One piece of a tool, one motion, no place farther than `reach` from the tip of interest, lines along the
+/// coordinate axis `along`; a line is named by its places on the next axes u and v.
 class LineSweep {
  public:
   LineSweep(const verify::MillBody& body, const Motion& motion, std::size_t along, double tolerance,

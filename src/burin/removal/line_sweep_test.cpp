@@ -88,8 +88,8 @@ void compare(unsigned seed, double turn, double tolerance, double slack, int cou
                  v = geom::component(near, (c.along + 2) % 3) + cases.in(-4, 4);
     std::vector<Covered> covered;
     for (int k = 0; k < parts; ++k) {
-      LineSweep sweep(c.body, Motion::part(c.stretch, k / double(parts), (k + 1) / double(parts)), c.along, tolerance,
-                      span);
+      LineSweep sweep(c.body, Motion::part(c.stretch, k / double(parts), (k + 1) / double(parts)), c.along,
+                      tolerance, span);
       const Covered found = sweep.line(u, v);
       if (found.empty()) continue;
       const LineSweep::Bounds outer = sweep.around(u, v);
@@ -98,9 +98,11 @@ void compare(unsigned seed, double turn, double tolerance, double slack, int cou
       covered.push_back(found);
       ++hits;
       for (const double h : {found.a, found.b}) {
-        ASSERT_GE(deepest(c, on_line(c.along, u, v, h)), -slack) << "case " << n << " h " << h << " of " << found.a << " " << found.b;
+        ASSERT_GE(deepest(c, on_line(c.along, u, v, h)), -slack)
+            << "case " << n << " h " << h << " of " << found.a << " " << found.b;
       }
-      for (const Vec3 normal : {sweep.normal_a(found), sweep.normal_b(found)}) ASSERT_NEAR(norm(normal), 1, 1e-9);
+      for (const Vec3 normal : {sweep.normal_a(found), sweep.normal_b(found)})
+        ASSERT_NEAR(norm(normal), 1, 1e-9);
       ASSERT_LE(geom::component(sweep.normal_a(found), c.along), 0.05) << "case " << n;
       ASSERT_GE(geom::component(sweep.normal_b(found), c.along), -0.05) << "case " << n;
     }

@@ -57,8 +57,8 @@ Result<void> check_size(const geom::Box3& box, double resolution, bool three, st
   would_do = std::ceil(would_do * kDigits) / kDigits;
   return Error{ErrorCode::range,
                "material removal at " + format_shortest(resolution) + " mm needs " + format_fixed(dexels, 0) +
-                   " dexels (up to " + std::to_string(most) + ": a resolution of " + format_fixed(would_do, 3) +
-                   " mm would do)",
+                   " dexels (up to " + std::to_string(most) + ": a resolution of " +
+                   format_fixed(would_do, 3) + " mm would do)",
                {}};
 }
 
@@ -117,7 +117,7 @@ Result<std::unique_ptr<Field>> make_field(const Stock& stock, const verify::Chec
                                           const RemovalOptions& asked, ProgressSink* progress) {
   if (auto ok = check(asked); !ok) return ok.error();
   if (auto ok = validate(stock); !ok) return ok.error();
-  if (auto ok = validate(path); !ok) return ok.error();
+  if (auto ok = verify::validate(path); !ok) return ok.error();
   const auto three = three_directions(path, asked.directions);
   if (!three) return three.error();
   const geom::Box3 box = bounds(stock);
@@ -211,7 +211,8 @@ Result<Removal> remove_material(const Stock& stock, const verify::CheckedPath& p
     if (!field) return field.error();
     return Removal(std::move(*field));
   } catch (const std::bad_alloc&) {
-    return Error{ErrorCode::range, "material removal needs more memory than there is (a coarser resolution)", {}};
+    return Error{
+        ErrorCode::range, "material removal needs more memory than there is (a coarser resolution)", {}};
   }
 }
 

@@ -71,11 +71,10 @@ std::size_t open_edges(const geom::Mesh& mesh) {
 
 Result<void> check(const MeshStock& stock) {
   const geom::Mesh& mesh = stock.mesh;
-  const auto bad = [](const std::string& what) {
-    return Error{ErrorCode::geometry, "stock: " + what, {}};
-  };
+  const auto bad = [](const std::string& what) { return Error{ErrorCode::geometry, "stock: " + what, {}}; };
   if (mesh.triangles.empty()) return bad("the mesh has no triangles (a closed mesh)");
-  if (mesh.triangles.size() > geom::kNoEdge / 3) return wrong("the mesh has too many triangles (up to 1.4e9)");
+  if (mesh.triangles.size() > geom::kNoEdge / 3)
+    return wrong("the mesh has too many triangles (up to 1.4e9)");
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
       if (v >= mesh.vertices.size() || !in_reach(mesh.vertices[v]))
@@ -86,9 +85,8 @@ Result<void> check(const MeshStock& stock) {
                " edges (a closed mesh, triangles counter-clockwise from outside)");
   const double volume = geom::examine(mesh).signed_volume;
   if (!(volume > 0))
-    return bad(volume < 0
-                   ? "the mesh is inside out (a closed mesh, triangles counter-clockwise from outside)"
-                   : "the mesh has no volume (a closed mesh)");
+    return bad(volume < 0 ? "the mesh is inside out (a closed mesh, triangles counter-clockwise from outside)"
+                          : "the mesh has no volume (a closed mesh)");
   return {};
 }
 

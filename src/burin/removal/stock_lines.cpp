@@ -21,7 +21,8 @@ constexpr std::size_t kMostCrossings = 64'000'000;
 /// each(line u, line v, place in the tile) for the lines of tile t.
 template <class Each>
 void for_lines(const DexelField& field, std::size_t t, Each&& each) {
-  const auto tu = static_cast<std::uint32_t>(t % field.tiles_u()), tv = static_cast<std::uint32_t>(t / field.tiles_u());
+  const auto tu = static_cast<std::uint32_t>(t % field.tiles_u()),
+             tv = static_cast<std::uint32_t>(t / field.tiles_u());
   const std::uint32_t nu = field.grid().count[field.u_axis()], nv = field.grid().count[field.v_axis()];
   for (std::uint32_t v = tv * Tile::kSide; v < std::min(nv, (tv + 1) * Tile::kSide); ++v)
     for (std::uint32_t u = tu * Tile::kSide; u < std::min(nu, (tu + 1) * Tile::kSide); ++u)
@@ -32,11 +33,19 @@ Vec3 unit_along(std::size_t axis) {
   return {axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0};
 }
 
-Result<void> fill(DexelField& field, const BlockStock&, unsigned threads) {
-  const Vec3 e = unit_along(field.axis());
-  const Span whole{0, static_cast<float>(field.grid().length(field.axis())), pack(-e), pack(e)};
+Result<void> fill(DexelField& field, const BlockStock& block, unsigned threads) {
+  const Grid& grid = field.grid();
+  const Vec3 e = unit_along(field.axis()), lo = block.lo - grid.origin, hi = block.hi - grid.origin;
+  const Span whole{static_cast<float>(component(lo, field.axis())),
+                   static_cast<float>(component(hi, field.axis())), pack(-e), pack(e)};
+  const auto inside = [&](std::uint32_t i, std::size_t axis) {
+    const double at = (i + 0.5) * grid.step[axis];
+    return component(lo, axis) <= at && at < component(hi, axis);
+  };
   parallel_for(field.tile_count(), threads, [&](std::size_t t, std::size_t) {
-    for_lines(field, t, [&](std::uint32_t, std::uint32_t, std::uint32_t l) { field.tile(t).add(l, whole); });
+    for_lines(field, t, [&](std::uint32_t u, std::uint32_t v, std::uint32_t l) {
+      if (inside(u, field.u_axis()) && inside(v, field.v_axis())) field.tile(t).add(l, whole);
+    });
   });
   return {};
 }
@@ -50,7 +59,8 @@ Result<void> fill(DexelField& field, const CylinderStock& cylinder, unsigned thr
   parallel_for(field.tile_count(), threads, [&](std::size_t t, std::size_t) {
     LineSweep sweep({cylinder.radius, 0, cylinder.length, 0}, still, field.axis(), 0, 0);
     for_lines(field, t, [&](std::uint32_t u, std::uint32_t v, std::uint32_t l) {
-      const Covered c = sweep.line((u + 0.5) * grid.step[field.u_axis()], (v + 0.5) * grid.step[field.v_axis()]);
+      const Covered c =
+          sweep.line((u + 0.5) * grid.step[field.u_axis()], (v + 0.5) * grid.step[field.v_axis()]);
       const Span s{static_cast<float>(c.a), static_cast<float>(c.b)};
       if (c.empty() || !(s.lo < s.hi)) return;
       field.tile(t).add(l, {s.lo, s.hi, pack(sweep.normal_a(c)), pack(sweep.normal_b(c))});
@@ -160,11 +170,10 @@ class MeshLines {
         if (found.size() == kMostCrossings) return false;
         double h = 0;
         for (std::size_t k = 0; k < 3; ++k)
-          h += static_cast<double>(side[(k + 1) % 3]) / size *
-               (component(mesh_.vertices[c[k]], axis) - base);
+          h += static_cast<double>(side[(k + 1) % 3]) / size * (component(mesh_.vertices[c[k]], axis) - base);
         // Counter-clockwise seen against the line: it leaves there.
-        found.push_back({static_cast<std::uint32_t>(u * Tile::kSide + v % Tile::kSide),
-                         static_cast<float>(h), area > 0 ? -1 : 1, pack(n)});
+        found.push_back({static_cast<std::uint32_t>(u * Tile::kSide + v % Tile::kSide), static_cast<float>(h),
+                         area > 0 ? -1 : 1, pack(n)});
       }
     }
     return true;

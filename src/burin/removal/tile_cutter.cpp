@@ -63,8 +63,10 @@ TileCutter::TileCutter(DexelField& field, std::size_t tile, const CutLimits& lim
   };
   u_ = range(tile % field.tiles_u(), field.grid().count[u_axis_]);
   v_ = range(tile / field.tiles_u(), field.grid().count[v_axis_]);
-  box_.lo[u_axis_] = static_cast<float>(u_.from * step_u_), box_.hi[u_axis_] = static_cast<float>(u_.to * step_u_);
-  box_.lo[v_axis_] = static_cast<float>(v_.from * step_v_), box_.hi[v_axis_] = static_cast<float>(v_.to * step_v_);
+  box_.lo[u_axis_] = static_cast<float>(u_.from * step_u_),
+  box_.hi[u_axis_] = static_cast<float>(u_.to * step_u_);
+  box_.lo[v_axis_] = static_cast<float>(v_.from * step_v_),
+  box_.hi[v_axis_] = static_cast<float>(v_.to * step_v_);
 }
 
 void TileCutter::run(const std::vector<Cut>& cuts, const CutTree& tree, std::vector<ContactPart>& contacts) {
@@ -82,7 +84,8 @@ bool TileCutter::wanted(const CutBox& box) const {
 
 TileCutter::Range TileCutter::lines(float lo, float hi, std::size_t axis, const Range& most) const {
   const double step = field_.grid().step[axis];
-  const double from = std::ceil(static_cast<double>(lo) / step - 0.5), to = std::floor(static_cast<double>(hi) / step - 0.5) + 1;
+  const double from = std::ceil(static_cast<double>(lo) / step - 0.5),
+               to = std::floor(static_cast<double>(hi) / step - 0.5) + 1;
   return {static_cast<std::uint32_t>(std::clamp<double>(from, most.from, most.to)),
           static_cast<std::uint32_t>(std::clamp<double>(to, most.from, most.to))};
 }
@@ -93,8 +96,8 @@ void TileCutter::cut(const Cut& cut) {
   const geom::Vec2 axis = (cut.body.high - cut.body.low) * uv(cut.motion.axis), way = uv(cut.motion.way);
   const geom::Point2 center =
       geom::Point2{} + uv(cut.motion.tip + 0.5 * (cut.body.low + cut.body.high) * cut.motion.axis);
-  const double grow = cut.body.radius + limits_.tolerance +
-                      (cut.motion.turns ? 0.5 * norm(cut.motion.turn) * cut.reach : 0);
+  const double grow =
+      cut.body.radius + limits_.tolerance + (cut.motion.turns ? 0.5 * norm(cut.motion.turn) * cut.reach : 0);
   const Strip beside_axis(axis, center, axis, way, grow), beside_way(way, center, axis, way, grow);
   std::optional<LineSweep> sweep, deep;
   const float lo = cut.box.lo[axis_], hi = cut.box.hi[axis_];
@@ -172,9 +175,8 @@ void TileCutter::note(Open& open, std::uint32_t line, std::uint32_t u, std::uint
 
 void TileCutter::mark(std::uint32_t u, std::uint32_t v, float lo, float hi, std::uint32_t move) {
   const Grid& g = field_.grid();
-  const double step = g.step[axis_];
-  const auto from = static_cast<std::uint32_t>(std::max(0.0, std::ceil(static_cast<double>(lo) / step - 0.5)));
-  for (std::uint32_t k = from; k < g.count[2] && (k + 0.5) * step < static_cast<double>(hi); ++k)
+  const auto [from, to] = g.nodes_in(axis_, lo, hi);
+  for (std::uint32_t k = from; k < to; ++k)
     times_.cut_at[(static_cast<std::size_t>(k) * g.count[1] + v) * g.count[0] + u] = move + 1;
 }
 

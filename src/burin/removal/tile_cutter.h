@@ -15,11 +15,12 @@ namespace burin::removal {
 struct ContactPart {
   std::uint32_t move = 0;
   verify::Body kind = verify::Body::cutter;
-  std::uint8_t axis = 0;   ///< of the dexels
-  bool deep = false;       ///< more than contact_mm somewhere
-  float depth = 0;         ///< most taken out of one line
+  std::uint8_t axis = 0;  ///< of the dexels
+  bool deep = false;      ///< more than contact_mm somewhere
+  float depth = 0;        ///< most taken out of one line
   double volume = 0;
-  std::array<float, 3> at{};  ///< in the piece taken last out of that line, relative to the corner of the grid
+  std::array<float, 3>
+      at{};  ///< in the piece taken last out of that line, relative to the corner of the grid
 };
 
 struct CutLimits {

@@ -102,6 +102,7 @@ Result<BeamReport> checked(const std::vector<Outline>& outlines, const cl::Progr
                   std::move(edge_outline),
                   std::move(line_outline),
                   part_is_around(outlines),
+                  options.tolerance_mm + options.bound_mm,
                   thread_count(options.threads)};
   auto report = measure_edges(scene);
   if (!report) return report;

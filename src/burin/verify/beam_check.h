@@ -59,7 +59,8 @@ struct BeamReport {
   BeamWorst gouge, excess;
   BeamWorst corner_excess;  ///< not part of `excess`, its mean and its area
   double excess_mean_mm = 0;
-  /// Of the part taken away and of what is left between outline and cut, where that is beyond the tolerance.
+  /// Of the part taken away and of what is left between outline and cut, where that is beyond the tolerance
+  /// (by more than `bound_mm` of the options).
   double gouge_area_mm2 = 0, excess_area_mm2 = 0;
   double uncut_mm = 0, outline_mm = 0;
   std::vector<std::uint32_t> uncut_outlines;

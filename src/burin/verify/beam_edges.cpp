@@ -22,10 +22,13 @@ using geom::Vec2;
 constexpr std::size_t kChunk = 128;  ///< segments a task
 /// Of a task, for each stretch it begins with and in all: where a program does not fit its outlines at all,
 /// halving would go on everywhere.
-constexpr std::size_t kMostLooks = 100, kLooksAtLeast = 4000;
+constexpr std::size_t kMostLooks = 10, kLooksAtLeast = 1000;
 /// Places a drawing gets at most when no spacing is asked for, and beam diameters from one to the next when
 /// there are fewer.
 constexpr double kMostPlaces = 100'000, kSpacingInKerfs = 2;
+/// Which side of an edge is looked at: above rounding, below what an NC program can say. On the inner side of
+/// an edge the part lies once; more often where outlines overlap or end in tiny loops.
+constexpr double kBeside_mm = 1e-6;
 constexpr int kMostSteps = 60;           ///< into the part at one place
 constexpr double kResolution_mm = 1e-7;  ///< of depths: a tenth of the last decimal of any NC program
 
@@ -47,43 +50,66 @@ struct Outcome {
   double weighted_mm2 = 0, length_mm = 0, area_mm2 = 0, uncut_mm = 0, spacing_mm = 0;
 };
 
+/// Segments of edges, then of centre lines, by one number.
+struct Item {
+  const Segment* segment = nullptr;
+  std::uint32_t outline = 0;
+  bool centre = false;
+};
+Item item_of(const BeamScene& scene, std::size_t i) {
+  const std::size_t edges = scene.edges.segments().size();
+  if (i < edges) return {&scene.edges.segments()[i], scene.edge_outline[i], false};
+  return {&scene.lines.segments()[i - edges], scene.line_outline[i - edges], true};
+}
+
+/// The segments [first, end). First all are looked at here and there, so that refining knows what the worst
+/// is at least.
 class Task {
  public:
-  Task(const BeamScene& scene, double spacing) : scene_(scene), radius_(scene.radius), spacing_(spacing) {}
+  Task(const BeamScene& scene, double spacing, std::size_t first, std::size_t end)
+      : scene_(scene), radius_(scene.radius), spacing_(spacing), first_(first), end_(end) {}
 
-  void edge(std::uint32_t index) {
-    segment(scene_.edges.segments()[index], scene_.edge_outline[index], false);
+  void survey() {
+    for (std::size_t i = first_; i < end_; ++i) {
+      take(i);
+      const std::size_t n = parts();
+      for (std::size_t k = 0; k <= n; ++k) looks_.push_back(look(double(k) / double(n)));
+    }
   }
-  void line(std::uint32_t index) {
-    segment(scene_.lines.segments()[index], scene_.line_outline[index], true);
+
+  void refine(double excess, double corner) {
+    known_excess_ = excess;
+    known_corner_ = corner;
+    left_looks_ = kMostLooks * looks_.size() + kLooksAtLeast;
+    std::size_t at = 0;
+    for (std::size_t i = first_; i < end_; ++i) {
+      take(i);
+      const std::size_t n = parts();
+      for (std::size_t k = 0; length_ > 0 && k < n; ++k)
+        halve(double(k) / double(n), double(k + 1) / double(n), looks_[at + k], looks_[at + k + 1]);
+      at += n + 1;
+    }
+    looks_.clear();
   }
-  Outcome take() { return std::move(out_); }
+  const Outcome& outcome() const { return out_; }
 
  private:
   double bound() const { return 0.5 * scene_.options.bound_mm; }
 
-  void segment(const Segment& s, std::uint32_t outline, bool centre) {
-    whole_ = &s;
-    outline_ = outline;
-    centre_ = centre;
-    length_ = length_of(s);
-    if (!(length_ > 0)) return;
-    const auto n = static_cast<std::size_t>(std::max(1.0, std::ceil(length_ / spacing_)));
-    looks_ += kMostLooks * n + kLooksAtLeast / kChunk;
-    Look from = look(0);
-    for (std::size_t i = 0; i < n; ++i) {
-      const double f0 = double(i) / double(n), f1 = double(i + 1) / double(n);
-      const Look to = look(f1);
-      halve(f0, f1, from, to);
-      from = to;
-    }
+  void take(std::size_t i) {
+    const Item item = item_of(scene_, i);
+    whole_ = item.segment;
+    outline_ = item.outline;
+    centre_ = item.centre;
+    length_ = length_of(*whole_);
   }
+  std::size_t parts() const { return static_cast<std::size_t>(std::max(1.0, std::ceil(length_ / spacing_))); }
 
   // --- one ray
   // -------------------------------------------------------------------------------------------------
 
   Look look(double f) {
-    if (looks_ > 0) --looks_;
+    if (left_looks_ > 0) --left_looks_;
     Look l;
     l.p = point_on(*whole_, f);
     if (centre_) {
@@ -107,29 +133,44 @@ class Task {
     return l;
   }
 
-  /// A beam that does not fit in here leaves a corner; a ray that comes to the part again before the cut has
-  /// found none.
+  /// A place that the cut touches is cut, even when its ray leads away (beside a beam on the wrong side,
+  /// rounding alone would decide); a place in the part is no edge of it; a beam that does not fit in here
+  /// leaves a corner; a ray that comes to the part again before the cut has found none.
   void judge(Look& l, Vec2 n) {
+    const auto touched = scene_.cut.nearest(l.p, radius_ + scene_.options.bound_mm);
+    if (touched.found()) {
+      l.mm = std::max(0.0, touched.distance - radius_);
+      l.piece = touched.segment;
+      l.meets = true;
+      return;
+    }
+    if (scene_.winding(l.p - kBeside_mm * n) > 1) {
+      l.mm = 0;
+      l.meets = false;
+      return;
+    }
     const double fits = radius_ + scene_.options.tolerance_mm;
-    if (scene_.edges.nearest(l.p + fits * n, fits).distance < fits - scene_.options.bound_mm) {
+    // The disc beside the place holds part, or, in the tip of a corner, lies in it.
+    if (scene_.edges.nearest(l.p + fits * n, fits).distance < fits - scene_.options.bound_mm ||
+        blocked(l.p, n, std::min(2 * fits, l.mm))) {
       l.kind = Kind::corner;
       const auto near = scene_.cut.nearest(l.p, radius_ + scene_.options.reach_mm);
       l.meets = near.found();
       l.piece = near.segment;
       l.mm = std::max(0.0, near.distance - radius_);
-      if (l.meets && l.mm > scene_.options.tolerance_mm && blocked(l.p, unit(near.point - l.p), l.mm)) {
+      // Further than a kerf and not in sight: what is near is another cut.
+      if (l.meets && l.mm > scene_.options.kerf_mm && blocked(l.p, unit(near.point - l.p), l.mm))
         l.meets = false;
-      }
     } else if (l.meets && l.mm > 2 * radius_) {
       l.meets = !blocked(l.p, n, l.mm);
     }
     if (!l.meets) l.kind = Kind::uncut;
   }
 
-  /// Whether an edge lies between p (on an edge itself) and p + s n.
+  /// Whether part lies between p (on an edge) and p + s n.
   bool blocked(Point2 p, Vec2 n, double s) const {
-    const Segment way = geom::make_line(p + std::min(scene_.options.bound_mm, 0.5 * s) * n, p + s * n);
-    return scene_.edges.nearest(way, flat::kRounding).distance < kNever;
+    const Segment way = geom::make_line(p + std::min(kBeside_mm, 0.5 * s) * n, p + s * n);
+    return scene_.in_part(way.a) || scene_.edges.nearest(way, flat::kRounding).distance < kNever;
   }
 
   void count(const Look& l) {
@@ -146,14 +187,19 @@ class Task {
     double worst = kNever;
     std::uint32_t last = 0;
     bool any = false;
+    if (!looks[0].meets && !looks[1].meets && !looks[2].meets) return 0;
     for (int i = 0; i < 3; ++i) {
       if (!looks[i].meets || (any && looks[i].piece == last)) continue;
       last = looks[i].piece;
       any = true;
       const Segment& piece = scene_.cut.segments()[last];
-      worst = std::min(worst, centre_  ? flat::most_distance(s, piece)
-                              : corner ? std::max(0.0, flat::most_distance(s, piece) - radius_)
-                                       : latest_entry(s, piece, radius_));
+      if (centre_) {
+        worst = std::min(worst, flat::most_distance(s, piece));
+        continue;
+      }
+      const double off = std::max(0.0, flat::most_distance(s, piece) - radius_);
+      worst = std::min(worst, corner ? off : latest_entry(s, piece, radius_));
+      if (off <= scene_.options.bound_mm) worst = std::min(worst, off);  // touched all along
     }
     return worst;
   }
@@ -168,14 +214,16 @@ class Task {
     if (uncut == 0) {
       const bool corners = corner == 3;
       const double worst = worst_of(s, looks, corners);
-      const double known = corners ? out_.corner.mm : out_.excess.mm;
+      const double known =
+          corners ? std::max(known_corner_, out_.corner.mm) : std::max(known_excess_, out_.excess.mm);
       double& left = corners ? out_.corner_left : out_.left;
-      if (worst <= known + bound() || (looks_ == 0 && worst < kNever)) {
+      if (worst <= known + bound() || (left_looks_ == 0 && worst < kNever)) {
         left = std::max(left, worst);
         return place(looks[1], f, s);
       }
     }
-    if (length <= bound() || looks_ == 0) return place(looks[1], f, s);
+    if (left_looks_ == 0 && uncut == 0) out_.left = scene_.options.reach_mm;  // nothing is known
+    if (length <= bound() || left_looks_ == 0) return place(looks[1], f, s);
     halve(f0, f, from, looks[1]);
     halve(f, f1, looks[1], to);
   }
@@ -199,7 +247,7 @@ class Task {
       out_.length_mm += place.length_mm;
       // A strip beside an arc is wider or narrower outside.
       const double bend = whole_->is_line() ? 0 : 0.5 * mm / whole_->radius;
-      if (!centre_ && mm > scene_.options.tolerance_mm)
+      if (!centre_ && mm > scene_.area_from_mm)
         out_.area_mm2 += mm * place.length_mm * std::max(0.0, 1 + bend);
     }
     out_.places.push_back(place);
@@ -222,11 +270,14 @@ class Task {
 
   const BeamScene& scene_;
   double radius_, spacing_;
+  std::size_t first_, end_;
   const Segment* whole_ = nullptr;
   std::uint32_t outline_ = 0;
   bool centre_ = false;
   double length_ = 0;
-  std::size_t looks_ = 0;
+  std::vector<Look> looks_;  ///< of the survey
+  double known_excess_ = 0, known_corner_ = 0;
+  std::size_t left_looks_ = 0;
   Outcome out_;
 };
 
@@ -248,25 +299,25 @@ Result<BeamReport> measure_edges(const BeamScene& scene) {
                      "; a wider spacing, fewer outlines)",
                  {}};
   }
-  const std::size_t count = edges.size() + lines.size(), chunks = (count + kChunk - 1) / kChunk;
-  std::vector<Outcome> parts(chunks);
-  parallel_for(chunks, scene.threads, [&](std::size_t chunk, std::size_t) {
-    Task task(scene, spacing);
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
-      if (i < edges.size()) {
-        task.edge(static_cast<std::uint32_t>(i));
-      } else {
-        task.line(static_cast<std::uint32_t>(i - edges.size()));
-      }
-    }
-    parts[chunk] = task.take();
-  });
+  const std::size_t count = edges.size() + lines.size();
+  std::vector<Task> tasks;
+  for (std::size_t i = 0; i < count; i += kChunk)
+    tasks.emplace_back(scene, spacing, i, std::min(count, i + kChunk));
+  parallel_for(tasks.size(), scene.threads, [&](std::size_t i, std::size_t) { tasks[i].survey(); });
+  double excess = 0, corner = 0;
+  for (const Task& task : tasks) {
+    excess = std::max(excess, task.outcome().excess.mm);
+    corner = std::max(corner, task.outcome().corner.mm);
+  }
+  parallel_for(tasks.size(), scene.threads,
+               [&](std::size_t i, std::size_t) { tasks[i].refine(excess, corner); });
 
   BeamReport report;
   report.outline_mm = total;
   double weighted = 0, length = 0, left = 0, corner_left = 0;
   std::set<std::uint32_t> uncut;
-  for (const Outcome& part : parts) {
+  for (const Task& task : tasks) {
+    const Outcome& part = task.outcome();
     report.places.insert(report.places.end(), part.places.begin(), part.places.end());
     if (part.excess.mm > report.excess.mm) report.excess = part.excess;
     if (part.corner.mm > report.corner_excess.mm) report.corner_excess = part.corner;

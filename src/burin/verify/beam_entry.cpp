@@ -20,7 +20,7 @@ double into_disc(Point2 p, Vec2 n, Point2 c, double radius) {
   const double y = dot(w, n), x = cross(w, n);
   if (norm2(w) <= radius * radius) return 0;
   if (y < 0 || std::abs(x) > radius) return kNever;
-  return y - std::sqrt((radius - x) * (radius + x));
+  return std::max(0.0, y - std::sqrt((radius - x) * (radius + x)));
 }
 
 bool in_sector(const Segment& arc, Point2 p) {
@@ -56,7 +56,8 @@ double into_ring(Point2 p, Vec2 n, const Segment& arc, double radius) {
   }
   double best = kNever;
   const auto take = [&](double s) {
-    if (s >= 0 && s < best && in_sector(arc, p + s * n)) best = s;
+    // On the edge of the ring rounding decides whether p is within.
+    if (s >= -kRounding && s < best && in_sector(arc, p + s * n)) best = std::max(0.0, s);
   };
   if (d > outer && std::abs(x) <= outer) take(y - std::sqrt((outer - x) * (outer + x)));
   if (inner > 0 && std::abs(x) <= inner) take(y + std::sqrt((inner - x) * (inner + x)));

@@ -265,7 +265,7 @@ class Search {
     double swept = 0;
     geom::Box2 box;
     for (std::uint32_t i = 0; i < found.size(); ++i) {
-      if (found[i].upper <= scene_.options.tolerance_mm) continue;
+      if (found[i].upper <= scene_.area_from_mm) continue;
       const Segment& s = scene_.motion.pieces[i];
       deep.push_back(i);
       swept += 2 * radius_ * (length_of(s) + 2 * radius_);
@@ -305,7 +305,7 @@ class Search {
     if (!beam.found()) return 0;
     const Depth depth = depth_at(scene_, p);
     const double within = radius_ - beam.distance;
-    if (depth.mm + within <= scene_.options.tolerance_mm) return 0;
+    if (depth.mm + within <= scene_.area_from_mm) return 0;
     return clipped(size, depth.mm, depth.inwards, within, unit(beam.point - p));
   }
 

@@ -22,9 +22,11 @@ struct BeamScene {
   flat::Tree lines;                                       ///< centre lines
   std::vector<std::uint32_t> edge_outline, line_outline;  ///< of each segment
   bool part_around = false;                               ///< the plane around everything is part
+  double area_from_mm = 0;                                ///< what is less is no area
   unsigned threads = 1;
 
-  bool in_part(flat::Point2 p) const { return edges.winding(p) + (part_around ? 1 : 0) > 0; }
+  int winding(flat::Point2 p) const { return edges.winding(p) + (part_around ? 1 : 0); }
+  bool in_part(flat::Point2 p) const { return winding(p) > 0; }
 };
 
 /// How deep a point lies in what must not be cut: below the edges and out of the reach of a beam on the

@@ -26,8 +26,8 @@ constexpr std::size_t kTile = 64;
 constexpr std::size_t kTilesAtOnce = 4096;
 // Between the samples so much is left to find, in resolutions.
 constexpr double kGap = 2;
-// Tiles with the worst samples, and steps of the search in one of them, in one of the others, and in all of those
-// together that need more.
+// Tiles with the worst samples, and steps of the search in one of them, in one of the others, and in all of
+// those together that need more.
 constexpr std::size_t kFirst = 32;
 constexpr std::size_t kStepsFirst = 200'000;
 constexpr std::size_t kStepsTile = 4'000;
@@ -104,7 +104,12 @@ class Measure {
  public:
   Measure(const geom::Mesh& mesh, const SampledSurface& surface, const CheckedPath& path,
           const DeviationOptions& options, ProgressSink* progress)
-      : mesh_(mesh), surface_(surface), path_(path), options_(options), progress_(progress) {}
+      : mesh_(mesh),
+        surface_(surface),
+        path_(path),
+        options_(options),
+        progress_(progress),
+        inscribed_(mesh) {}
 
   Result<DeviationReport> run() {
     swept_ = swept_tools(path_);
@@ -123,14 +128,15 @@ class Measure {
       }
     };
     collect();
-    if (!search(worst, &TileWorst::gouge, "worst gouge") || !search(worst, &TileWorst::excess, "worst excess"))
+    if (!search(worst, &TileWorst::gouge, "worst gouge") ||
+        !search(worst, &TileWorst::excess, "worst excess"))
       return stopped();
     report_.gouge = worst.gouge;
     report_.excess = worst.excess;
     report_.bound_mm = options_.resolution_mm + path_.motion_mm;
     for (const TileWorst& w : tiles_)
-      report_.bound_mm = std::max(
-          {report_.bound_mm, w.gouge_most - worst.gouge.mm, w.excess_most - worst.excess.mm});
+      report_.bound_mm =
+          std::max({report_.bound_mm, w.gouge_most - worst.gouge.mm, w.excess_most - worst.excess.mm});
     add_areas();
     return std::move(report_);
   }
@@ -154,7 +160,8 @@ class Measure {
     Tile tile(swept_, options_);
     const std::vector<SampleLine>& lines = tile.measure(surface_.samples, index(t), count(t));
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const SampleLine& line = lines[i];
+      SampleLine line = lines[i];
+      line.best = -inscribed_.own(line.q, line.n, -line.best, options_.resolution_mm);
       const std::uint32_t at = index(t)[i];
       moments_[at] = line.at;
       report_.deviation_mm[at] =
@@ -167,8 +174,8 @@ class Measure {
     }
   }
 
-  /// The worst between the samples. First in the tiles with the worst samples, so that the others need only be
-  /// shown to have no more; those that need more steps than usual get what is left of them.
+  /// The worst between the samples. First in the tiles with the worst samples, so that the others need only
+  /// be shown to have no more; those that need more steps than usual get what is left of them.
   bool search(TileWorst& worst, WorstDeviation TileWorst::*which, std::string_view stage) {
     const bool gouge = which == &TileWorst::gouge;
     std::vector<std::size_t> tiles(tiles_.size());
@@ -192,14 +199,15 @@ class Measure {
     const TileWorst known = worst;
     const SearchLimits limits{kGap * options_.resolution_mm, path_.motion_mm, steps};
     const bool ok = each(stage, tiles, [&](std::size_t t) {
-      TileSearch search(mesh_, surface_, swept_, options_);
+      TileSearch search(mesh_, surface_, swept_, inscribed_, options_);
       TileWorst& mine = tiles_[t];
       if (which == &TileWorst::gouge) {
         const TileWorst found = search.gouge(index(t), count(t), known, limits);
         mine.gouge = found.gouge, mine.gouge_most = found.gouge_most, mine.gouge_open = found.gouge_open;
       } else {
         const TileWorst found = search.excess(index(t), count(t), moments_, known, limits);
-        mine.excess = found.excess, mine.excess_most = found.excess_most, mine.excess_open = found.excess_open;
+        mine.excess = found.excess, mine.excess_most = found.excess_most,
+        mine.excess_open = found.excess_open;
       }
     });
     for (const std::size_t t : tiles)
@@ -230,6 +238,7 @@ class Measure {
   const CheckedPath& path_;
   const DeviationOptions& options_;
   ProgressSink* progress_;
+  Inscribed inscribed_;
   Swept swept_;
   std::vector<std::uint32_t> order_;
   std::vector<Moment> moments_;  // of the samples

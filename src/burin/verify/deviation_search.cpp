@@ -63,16 +63,14 @@ void TileSearch::gouge(const std::uint32_t* index, std::size_t count,
   }
   const BoxExtent top = around(patches, 0), sunk = around(patches, -depth());
   std::vector<SweptTool::Part> some;
-  for (const SweptTool::Part& part : all)
-    swept_.tools[part.tool].narrow(part, sunk, top, most, some);
+  for (const SweptTool::Part& part : all) swept_.tools[part.tool].narrow(part, sunk, top, most, some);
   if (some.empty()) return;
   if (count <= kGroup) {
     for (const Patch& patch : patches) {
       const TriangleExtent above = shifted(patch, 0), below = shifted(patch, -depth());
       for (const SweptTool::Part& part : some)
-        swept_.tools[part.tool].gather(part, below, above, margin(patch, depth()), [&](const Candidate& c) {
-          gouge(patch, c, c.whole, 0);
-        });
+        swept_.tools[part.tool].gather(part, below, above, margin(patch, depth()),
+                                       [&](const Candidate& c) { gouge(patch, c, c.whole, 0); });
     }
     return;
   }
@@ -88,6 +86,8 @@ void TileSearch::gouge(const Patch& patch, const Candidate& c, const Span& span,
   if (below.value <= enough) return;
   const Upper above = upper_bound(body, *c.stretch, span, shifted(patch, 0), -limits_.motion);
   if (above.value <= -limits_.motion) return;
+  const TriangleExtent sunk = shifted(patch, -depth());
+  if (inscribed_.none_counts(sunk.center, sunk.radius, depth())) return;
   if (steps_ == 0 || halvings >= kMostHalvings) {
     give_up(patch, c, span);
     return;
@@ -124,13 +124,14 @@ void TileSearch::give_up(const Patch& patch, const Candidate& c, const Span& spa
 
 void TileSearch::take(const SampleLine& line) {
   if (!line.found()) return;
-  if (-line.best > worst_.gouge.mm) worst_.gouge = {-line.best, line.q, line.n, swept_.move_of(line.at)};
+  const double deep = inscribed_.own(line.q, line.n, -line.best, options_.resolution_mm);
+  if (deep > worst_.gouge.mm) worst_.gouge = {deep, line.q, line.n, swept_.move_of(line.at)};
 }
 
 // --- excess ----------------------------------------------------------------------------------------------
 // A patch has no more than H = found + gap when the patch raised by H lies within what one stretch goes
-// through. At one moment the tool is convex: three corners in it do. At three moments, to each corner its own,
-// the places between are in it at the moments between, but for the turning.
+// through. At one moment the tool is convex: three corners in it do. At three moments, to each corner its
+// own, the places between are in it at the moments between, but for the turning.
 
 TileWorst TileSearch::excess(const std::uint32_t* index, std::size_t count,
                              const std::vector<Moment>& moments, const TileWorst& known,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "burin/verify/inscribed.h"
 #include "burin/verify/sample_tile.h"
 #include "burin/verify/surface_cell.h"
 
@@ -18,15 +19,15 @@ struct SearchLimits {
 };
 struct TileWorst {
   WorstDeviation gouge, excess;
-  double gouge_most = 0, excess_most = 0;  ///< no place of the tile has more
+  double gouge_most = 0, excess_most = 0;        ///< no place of the tile has more
   bool gouge_open = false, excess_open = false;  ///< the steps did not do
 };
 
 class TileSearch {
  public:
   TileSearch(const geom::Mesh& mesh, const SampledSurface& surface, const Swept& swept,
-             const DeviationOptions& options)
-      : mesh_(mesh), surface_(surface), swept_(swept), options_(options) {}
+             const Inscribed& inscribed, const DeviationOptions& options)
+      : mesh_(mesh), surface_(surface), swept_(swept), inscribed_(inscribed), options_(options) {}
 
   /// `known`: the worst found so far anywhere. `moments`: of all samples, when their lines are entered.
   TileWorst gouge(const std::uint32_t* index, std::size_t count, const TileWorst& known,
@@ -55,6 +56,7 @@ class TileSearch {
   const geom::Mesh& mesh_;
   const SampledSurface& surface_;
   const Swept& swept_;
+  const Inscribed& inscribed_;
   const DeviationOptions& options_;
   SearchLimits limits_;
   TileWorst worst_;

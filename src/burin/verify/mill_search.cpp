@@ -37,15 +37,16 @@ Error out_of_range(const std::string& what) {
 }  // namespace
 
 std::vector<ToolPiece> pieces_of(const CheckedMill& tool) {
-  std::vector<ToolPiece> out{{{tool.radius, 0, tool.length, tool.corner_radius}, ToolPart::cutter}};
-  for (const ToolCylinder& c : tool.cylinders)
-    out.push_back({{c.radius, c.from, c.to, 0}, c.holder ? ToolPart::holder : ToolPart::shank});
+  std::vector<ToolPiece> out;
+  for (const MillBody& body : bodies_of(tool)) {
+    const ToolCylinder* c = out.empty() ? nullptr : &tool.cylinders[out.size() - 1];
+    out.push_back({body, !c ? ToolPart::cutter : c->holder ? ToolPart::holder : ToolPart::shank});
+  }
   return out;
 }
-
 double span(const CheckedMill& tool) {
   double span = 0;
-  for (const ToolPiece& p : pieces_of(tool)) span = std::max(span, p.body.span());
+  for (const MillBody& body : bodies_of(tool)) span = std::max(span, body.span());
   return span;
 }
 

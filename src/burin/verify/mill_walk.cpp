@@ -2,7 +2,6 @@
 #include "burin/verify/mill_walk.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace burin::verify {
 namespace {
@@ -31,25 +30,6 @@ std::vector<Block> blocks_of(const CheckedPath& path) {
     }
   }
   return blocks;
-}
-
-Result<void> validate(const CheckedPath& path) {
-  if (!(std::isfinite(path.motion_mm) && path.motion_mm >= 0))
-    return Error{ErrorCode::range, "the bound of the motion is no number (0 or more)", {}};
-  for (const ToolPath& tool : path.tools) {
-    if (auto ok = validate(tool.tool); !ok) return ok.error();
-    const cl::Pose* from = &tool.from;
-    if (auto ok = validate_pose(*from, tool.pieces.empty() ? 0 : tool.pieces.front().move); !ok)
-      return ok.error();
-    for (const PathPiece& piece : tool.pieces) {
-      if (piece.move >= path.moves.size())
-        return Error{ErrorCode::range, "a piece of the path belongs to no move", {}};
-      if (auto ok = validate_pose(piece.to, piece.move); !ok) return ok.error();
-      if (auto ok = validate_turn(*from, piece.to, piece.move); !ok) return ok.error();
-      from = &piece.to;
-    }
-  }
-  return {};
 }
 
 Around around(const Step* begin, const Step* end, double span) {

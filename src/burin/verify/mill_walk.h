@@ -29,10 +29,6 @@ struct Block {
 };
 std::vector<Block> blocks_of(const CheckedPath& path);
 
-/// Poses that are finite, axes that are unit vectors, turns that a great circle decides (geometry; names the
-/// move); tools; a motion bound that is a number.
-Result<void> validate(const CheckedPath& path);
-
 /// A place of all steps from begin to end, and how far any place of a piece of the tool with this span is
 /// from where it is then.
 struct Around {

@@ -73,7 +73,7 @@ class Builder {
 
   /// A tool that is in the spindle already is not changed.
   void load(const cl::ToolChange& change) {
-    if (change == loaded_ && (tool_ready_ || begun_)) return;
+    if (change == loaded_) return;
     if (begun_) at_.reset();  // the way to the change and back is the machine's
     loaded_ = change;
     tool_ready_ = false;
@@ -102,6 +102,13 @@ class Builder {
     const bool rapid = std::holds_alternative<cl::Rapid>(record);
     const auto* arc = std::get_if<cl::Arc>(&record);
     if (auto ok = check(to); !ok) return ok;
+    if (move() < options_.unknown.size() && options_.unknown[move()]) {
+      at_.reset();
+      tool_ready_ = false;
+      if (joints_) joints_at_ = (*joints_)[move()];
+      path_.moves.push_back({static_cast<std::uint32_t>(record_), line(), rapid});
+      return {};
+    }
     if (arc && !at_) return wrong(ErrorCode::geometry, "an arc from nowhere (a move before it)");
     if (auto ok = ready_tool(at_.value_or(to)); !ok) return ok;
     rapid_ = rapid;
@@ -226,6 +233,25 @@ std::size_t CheckedPath::piece_count() const {
   std::size_t n = 0;
   for (const ToolPath& t : tools) n += t.pieces.size();
   return n;
+}
+
+Result<void> validate(const CheckedPath& path) {
+  if (!(std::isfinite(path.motion_mm) && path.motion_mm >= 0))
+    return Error{ErrorCode::range, "the bound of the motion is no number (0 or more)", {}};
+  for (const ToolPath& tool : path.tools) {
+    if (auto ok = validate(tool.tool); !ok) return ok.error();
+    const cl::Pose* from = &tool.from;
+    if (auto ok = validate_pose(*from, tool.pieces.empty() ? 0 : tool.pieces.front().move); !ok)
+      return ok.error();
+    for (const PathPiece& piece : tool.pieces) {
+      if (piece.move >= path.moves.size())
+        return Error{ErrorCode::range, "a piece of the path belongs to no move", {}};
+      if (auto ok = validate_pose(piece.to, piece.move); !ok) return ok.error();
+      if (auto ok = validate_turn(*from, piece.to, piece.move); !ok) return ok.error();
+      from = &piece.to;
+    }
+  }
+  return {};
 }
 
 Result<CheckedPath> make_checked_path(const cl::Program& program, const ToolSource& tool,

@@ -27,7 +27,7 @@ struct PathPiece {
 };
 
 /// What one tool does. The way to the first GOTO after a tool change is unknown: the motion begins in it, and
-/// its piece has no length.
+/// its piece has no length. The same after a move that ends nobody knows where.
 struct ToolPath {
   CheckedMill tool;
   int tool_number = 0;
@@ -49,9 +49,14 @@ struct CheckedPath {
   std::size_t piece_count() const;
 };
 
+/// What every check asks of a path: tools as check_mill takes them, numbers that are numbers (range); poses
+/// that are finite with unit axes, turns that a great circle decides (geometry; names the move).
+Result<void> validate(const CheckedPath& path);
+
 struct PathOptions {
   double motion_mm = 0.0005;
   std::size_t max_pieces = 20'000'000;
+  std::vector<bool> unknown;  ///< by move (empty: none): where it ends only the machine knows; no piece then
 };
 /// Shape of tool `number`: the job's, or what CUTTER/ says. Error: none is known (names what would be
 /// accepted).

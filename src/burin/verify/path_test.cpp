@@ -175,6 +175,15 @@ TEST(CheckedPath, StraightMovesAreOnePieceAndKnowWhereTheyComeFrom) {
   EXPECT_TRUE(path.tools[1].pieces[0].rapid);
   EXPECT_EQ(path.tools[1].pieces[1].move, 4u);
   EXPECT_EQ(path.motion_mm, 0);
+  // Where move 1 ends nobody knows: the motion begins again in move 2.
+  PathOptions gap;
+  gap.unknown = {false, true, false, false, false};
+  const CheckedPath broken = made(make_checked_path(program, mill, gap));
+  ASSERT_EQ(broken.tools.size(), 3u);
+  EXPECT_EQ(broken.tools[0].pieces.size(), 1u);
+  EXPECT_EQ(broken.tools[1].tool_number, 3);
+  EXPECT_EQ(broken.tools[1].from.tip, (Point3{20, 0, 0}));
+  EXPECT_EQ(broken.moves.size(), 5u);
   ASSERT_EQ(path.moves.size(), 5u);
   EXPECT_EQ(path.moves[2].line, 9u);
   EXPECT_EQ(path.moves[2].record, 5u);

@@ -365,6 +365,15 @@ std::optional<SceneMachine> scene_machine(const kinematics::Kinematics& machine)
   return out;
 }
 
+std::vector<std::uint32_t> lines_of_records(const std::vector<std::uint32_t>& line_to_record,
+                                            std::size_t records) {
+  // Never empty: that would mean that the sources are lines.
+  std::vector<std::uint32_t> lines(std::max<std::size_t>(1, records), 0);
+  for (std::size_t i = 0; i < line_to_record.size(); ++i)
+    if (line_to_record[i] < records) lines[line_to_record[i]] = static_cast<std::uint32_t>(i + 1);
+  return lines;
+}
+
 std::vector<std::uint32_t> nodes_of_moves(const ScenePath& path, std::size_t moves) {
   std::vector<std::uint32_t> out(moves, 0);
   std::size_t filled = 0;

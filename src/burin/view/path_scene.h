@@ -40,6 +40,10 @@ SceneTool beam_tool(double kerf_mm);
 /// The rotary axes; nothing when there are none.
 std::optional<SceneMachine> scene_machine(const kinematics::Kinematics& machine);
 
+/// Line of each record, from 1, from the record behind each line as posts give it; 0: none.
+std::vector<std::uint32_t> lines_of_records(const std::vector<std::uint32_t>& line_to_record,
+                                            std::size_t records);
+
 /// The last node of each GOTO: where a finding of a move is shown. Moves without a node: that of the move
 /// before.
 std::vector<std::uint32_t> nodes_of_moves(const ScenePath& path, std::size_t moves);

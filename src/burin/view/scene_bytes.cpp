@@ -201,8 +201,25 @@ struct Thinned {
   geom::Mesh mesh;
   std::vector<float> value;
 };
+/// Without the vertices that no triangle has.
+Thinned used(const SceneMesh& from) {
+  constexpr std::uint32_t kUnused = 0xffffffffu;
+  std::vector<std::uint32_t> place(from.mesh.vertices.size(), kUnused);
+  for (const auto& t : from.mesh.triangles)
+    for (const std::uint32_t v : t) place[v] = 0;
+  Thinned out;
+  for (std::size_t v = 0; v < place.size(); ++v) {
+    if (place[v] == kUnused) continue;
+    place[v] = static_cast<std::uint32_t>(out.mesh.vertices.size());
+    out.mesh.vertices.push_back(from.mesh.vertices[v]);
+    if (!from.value.empty()) out.value.push_back(from.value[v]);
+  }
+  for (const auto& t : from.mesh.triangles)
+    out.mesh.triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
+  return out;
+}
 Thinned thinned(const SceneMesh& from, std::size_t max_triangles) {
-  if (from.mesh.triangles.size() <= max_triangles) return {from.mesh, from.value};
+  if (from.mesh.triangles.size() <= max_triangles) return used(from);
   ReducedMesh less = reduced(from.mesh, 0, from.mesh.triangles.size(), max_triangles);
   Thinned out{std::move(less.mesh), {}};
   if (from.value.empty()) return out;

@@ -7,7 +7,9 @@ import { isDark } from "../colours";
 import { bilinear, contours, levelsFor } from "../logic/contours";
 import type { Contour } from "../logic/contours";
 import { ANGLE_STEPS, brief, fixed, stepOf, ticks } from "../logic/format";
-import { focus, goNode } from "../seek";
+import { standingAt } from "../logic/orient";
+import { feedAt } from "../logic/section";
+import { focus, goNode, motionOf } from "../seek";
 import { el, haloed, sheet, themed, within } from "../ui";
 
 const LEFT = 44, RIGHT = 12, TOP = 10, BOTTOM = 36;
@@ -28,22 +30,22 @@ class Map2 {
   readonly box: HTMLElement;
   readonly out = el("div", { class: "readout", "aria-live": "polite" });
   private again: () => void;
-  private map: CSpace | null = null; private lines: Contour[] = []; private mark: [number, number] | null = null;
+  private map: CSpace | null = null; private lines: Contour[] = []; private mark: [number, number] | null = null; private held = false;
   constructor(private scene: Scene, private store: Store) {
     const canvas = el("canvas", { "aria-hidden": "true" });
     this.box = el("div", { class: "map", tabindex: 0, role: "application", "aria-label": "Tilt and yaw of the contact point. Arrow keys move the mark, Escape takes it away" }, canvas);
     this.box.style.cssText = "cursor:crosshair;touch-action:pan-y";
     this.again = sheet(canvas, ({ g, w, h }) => this.draw(g, w, h)).again;
     store.on(["theme"], () => this.again());
-    let held = false;
+    store.on(["trial"], s => { if (!s.trial && this.mark && !this.held) { this.mark = null; this.say(); this.again(); } });
     const take = (e: PointerEvent) => { const p = within(e, this.box); this.put(this.tiltAt(p.x), this.yawAt(p.y)); };
-    this.box.addEventListener("pointerdown", e => { if (e.button === 0) { held = true; this.box.setPointerCapture(e.pointerId); take(e); } });
-    this.box.addEventListener("pointermove", e => { if (held) take(e); });
-    for (const end of ["pointerup", "pointercancel"]) this.box.addEventListener(end, () => { held = false; });
+    this.box.addEventListener("pointerdown", e => { if (e.button === 0) { this.held = true; this.box.setPointerCapture(e.pointerId); take(e); } });
+    this.box.addEventListener("pointermove", e => { if (this.held) take(e); });
+    for (const end of ["pointerup", "pointercancel"]) this.box.addEventListener(end, () => { this.held = false; });
     this.box.addEventListener("keydown", e => {
       const m = this.map, d: Record<string, [number, number]> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
       if (!m || e.ctrlKey || e.altKey || e.metaKey) return;
-      if (e.key === "Escape" && this.mark) this.mark = null;
+      if (e.key === "Escape" && this.mark) this.unmark();
       else if (d[e.key]) { const [t, y] = this.mark ?? m.chosen; this.put(t + d[e.key][0] * (m.tilt[1] - m.tilt[0]) / 100, y + d[e.key][1] * (m.yaw[1] - m.yaw[0]) / 100); }
       else return;
       e.preventDefault(); e.stopPropagation(); this.say(); this.again();
@@ -51,7 +53,7 @@ class Map2 {
   }
   set(map: CSpace): void {
     if (map === this.map) return;
-    this.map = map; this.mark = null;
+    this.map = map; this.unmark();
     this.lines = map.radius ? contours(map.radius, map.tilts, map.yaws, levelsFor(map.radius, 9)) : [];
     this.say(); this.again();
   }
@@ -61,7 +63,16 @@ class Map2 {
     const m = this.map;
     if (!m) return;
     this.mark = [Math.min(m.tilt[1], Math.max(m.tilt[0], tilt)), Math.min(m.yaw[1], Math.max(m.yaw[0], yaw))];
+    this.stand(this.mark);
     this.say(); this.again();
+  }
+  private unmark(): void { this.mark = null; if (this.store.state.trial) this.store.set({ trial: null }); }
+  /** Shows the tool at those angles, when it stands at the point of the map and its shape is known. */
+  private stand(angles: [number, number]): void {
+    const { scene, store, map: m } = this, n = focus(store), cutter = scene.tools[scene.path.tool[n]]?.pieces.find(p => p.kind === 0);
+    if (!m || m.node !== n || !cutter) return;
+    const motion = motionOf(scene), feed = feedAt(scene.path, n), at = feed && standingAt({ tip: motion.tip(n), axis: motion.axis(n) }, feed, m.chosen, angles, cutter.radius, cutter.corner);
+    store.set({ trial: at || null, playing: false });
   }
   /** Row and column of the grid, with their parts. */
   private grid([tilt, yaw]: [number, number]): [number, number] {
@@ -84,7 +95,7 @@ class Map2 {
     const line = (name: string, at: [number, number]) => [el("b", {}, name), ` tilt ${deg(at[0])}, yaw ${deg(at[1])}${this.radius(at)}`];
     this.out.replaceChildren(el("div", {}, el("b", {}, m.label || `node ${m.node}`)), el("div", {}, ...line("chosen", m.chosen)));
     if (m.initial) this.out.append(el("div", {}, ...line("initial", m.initial)));
-    this.out.append(el("div", { class: this.mark ? "" : "soft" }, ...(this.mark ? [...line("there", this.mark), `: ${this.cause(this.mark)}`] : ["A click shows the angles and the cause there."])));
+    this.out.append(el("div", { class: this.mark ? "" : "soft" }, ...(this.mark ? [...line("there", this.mark), `: ${this.cause(this.mark)}`] : ["A click shows the angles and the cause there, and the tool when it stands at this point."])));
   }
   private draw(g: CanvasRenderingContext2D, w: number, h: number): void {
     const m = this.map;

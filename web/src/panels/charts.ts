@@ -9,6 +9,8 @@ import { lastAtMost } from "../logic/motion";
 import { goTime, motionOf } from "../seek";
 import { button, check, choice, el } from "../ui";
 
+/** Of several lines in one chart (style.css). */
+const COLOURS = ["accent", "warn", "good", "hit", "soft", "bad"];
 interface Source { id: string; name: string; unit: string; zero: boolean; degrees: boolean; on: boolean; lines: () => Line[] }
 /** Every `of`-th number from `first` on: a column of rows. */
 function column(rows: Float32Array, first: number, of: number, add: number): Float32Array {
@@ -41,14 +43,27 @@ export const chartsPanel: Panel = {
       goTime(scene, store, path.time[i] + f * (path.time[j] - path.time[i]));
     };
     const charts = new Map<string, Chart>(), area = el("div", { class: "charts" }), picks = el("div", { class: "filters" });
-    const fill = () => {
-      area.replaceChildren();
-      for (const s of all) {
-        if (!s.on) continue;
-        let c = charts.get(s.id);
-        if (!c) { c = new Chart({ name: s.name, unit: s.unit, range, x, xKind: () => kind, lines: s.lines(), zero: s.zero, degrees: s.degrees, at, go }); charts.set(s.id, c); }
-        area.append(c.box); c.redraw();
+    let together = false, shown: Chart[] = [];
+    /** One chart each, or one for all of a unit. */
+    const sheets = (): Source[][] => {
+      const on = all.filter(s => s.on);
+      if (!together) return on.map(s => [s]);
+      return [...new Set(on.map(s => s.unit))].map(u => on.filter(s => s.unit === u));
+    };
+    const chartOf = (of: Source[]): Chart => {
+      const id = of.map(s => s.id).join();
+      let c = charts.get(id);
+      if (!c) {
+        const lines = of.flatMap((s, k) => s.lines().map(l => ({ ...l, colour: COLOURS[k % COLOURS.length], name: s.name })));
+        c = new Chart({ name: of.map(s => s.name).join(", "), unit: of[0].unit, range, x, xKind: () => kind, lines, zero: of.every(s => s.zero), degrees: of[0].degrees, at, go });
+        charts.set(id, c);
       }
+      return c;
+    };
+    const fill = () => {
+      shown = sheets().map(chartOf);
+      area.replaceChildren(...shown.map(c => c.box));
+      for (const c of shown) c.redraw();
       if (!area.firstChild) area.append(el("p", { class: "empty" }, "Choose what to draw above."));
     };
     for (const s of all) picks.append(check(s.name, s.on, on => { s.on = on; fill(); }).box);
@@ -56,10 +71,10 @@ export const chartsPanel: Panel = {
       kind = v as typeof kind;
       range.reset(0, kind === "time" ? m.duration : x()[path.count - 1]);
     });
-    const each = (call: (c: Chart) => void) => { for (const s of all) if (s.on) { const c = charts.get(s.id); if (c) call(c); } };
+    const each = (call: (c: Chart) => void) => shown.forEach(call);
     store.on(["time"], () => { if (area.clientHeight > 0) each(c => c.place()); });
     store.on(["theme"], () => each(c => c.redraw()));
     fill();
-    return el("div", { class: "column" }, el("div", { class: "filters" }, over, button("fit", "Show all of it", () => range.reset(), { text: "All", class: "" })), picks, area);
+    return el("div", { class: "column" }, el("div", { class: "filters" }, over, button("fit", "Show all of it", () => range.reset(), { text: "All", class: "" }), all.length > 1 && check("equal units together", together, on => { together = on; fill(); }).box), picks, area);
   },
 };

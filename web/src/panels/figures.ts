@@ -8,6 +8,8 @@ import { button, copy, el } from "../ui";
 /** As a spreadsheet takes it. */
 export const asText = (list: Figure[]): string => list.map(f => `${f.group}\t${f.name}\t${f.value}`).join("\n");
 
+/** Numbers with more digits than are read are cut here; what is copied has all of them. */
+const shown = (value: string): string => value.replace(/-?\d+\.\d{5,}/g, v => String(Number(Number(v).toPrecision(6))));
 function drawn(scene: Scene): Figure[] {
   const list: Figure[] = [], group = "Drawn", add = (name: string, value: string) => list.push({ group, name, value });
   if (scene.path.count > 1) add("path nodes", count(scene.path.count));
@@ -29,7 +31,7 @@ export const figuresPanel: Panel = {
     for (const group of new Set(own.map(f => f.group))) {
       const rows = own.filter(f => f.group === group);
       box.append(el("h3", {}, group || "Result", button("copy", `Copy ${group || "the figures"}`, () => void copy(asText(rows), group || "Figures"), { class: "small" })),
-        el("table", {}, el("tbody", {}, ...rows.map(f => el("tr", {}, el("td", {}, f.name), el("td", {}, f.value))))));
+        el("table", {}, el("tbody", {}, ...rows.map(f => el("tr", {}, el("td", {}, f.name), el("td", { title: f.value }, shown(f.value)))))));
     }
     if (scene.command) box.append(el("h3", {}, "Command", button("copy", "Copy the command", () => void copy(scene.command, "Command"), { class: "small" })), el("p", { class: "cmd" }, scene.command));
     return box;

@@ -2,7 +2,7 @@
 // The tool where it is: cutter, shank, holder as bodies of revolution; a nozzle with its beam for a laser.
 import { BufferAttribute, BufferGeometry, Color, GLSL3, Group, Mesh, Points, Quaternion, ShaderMaterial, Vector3 } from "three";
 import type { Piece, Tool } from "../scene";
-import type { Context } from "./context";
+import { type Context, toStage } from "./context";
 import { lineMaterial, lines, surfaceMaterial } from "./materials";
 import { waysDone } from "./path";
 import { poseAt, type Pose } from "./pose";
@@ -108,9 +108,10 @@ export class ToolView {
     (this.axisMaterial.uniforms["colour"]!.value as Color).copy(theme.soft);
   }
   update(): void {
-    const { path } = this.ctx.scene, { show } = this.ctx.store.state;
+    const { path, center } = this.ctx.scene, { show, trial } = this.ctx.store.state;
     this.group.visible = show.tool && path.count > 0;
     poseAt(path, waysDone(this.ctx), this.pose);
+    if (trial) { this.pose.tip.set(...toStage(trial.tip, center)); this.pose.axis.set(...trial.axis); }
     this.group.position.copy(this.pose.tip);
     this.group.quaternion.copy(turn.setFromUnitVectors(up, this.pose.axis));
     this.group.updateMatrixWorld(true);
