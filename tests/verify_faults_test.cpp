@@ -160,6 +160,14 @@ class Faults {
  public:
   Faults(Planned planned, unsigned seed)
       : p_(std::move(planned)), random_(seed), gotos_(motions_of(p_.program)) {
+    // Points put between those of a pass are the pass's.
+    std::size_t last = gotos_.front();
+    for (const std::size_t i : gotos_) {
+      if (p_.pass[i] < 0) continue;
+      if (p_.pass[i] == p_.pass[last])
+        for (std::size_t k = last; k < i; ++k) p_.pass[k] = p_.pass[i];
+      last = i;
+    }
     const auto fine = verify::sample_surface(p_.design.mesh, p_.design.machined, {}, {.spacing_mm = 0.1});
     EXPECT_TRUE(fine.ok()) << fine.error().to_string();
     if (fine) fine_ = fine->samples;
@@ -186,9 +194,7 @@ class Faults {
     SCOPED_TRACE("larger radius");
     verify::CheckedMill tool = p_.tool;
     tool.radius += 0.1;
-    if (p_.tool.corner_radius == p_.tool.radius) tool.corner_radius += 0.1, tool.length += 0.1;
-    for (verify::ToolCylinder& c : tool.cylinders)
-      if (!c.holder) c.radius += 0.1;
+    if (p_.tool.corner_radius == p_.tool.radius) tool.corner_radius += 0.1;
     const verified::Says says = say(p_.program, tool);
     const verify::CheckedPath path = p_.path(p_.program, tool);
     // What is reported is there, and no move that is tried does more.
@@ -215,6 +221,7 @@ class Faults {
         program.add(p_.program.records[i], p_.program.source[i]);
         continue;
       }
+      if (!cl::is_motion(p_.program.records[i])) continue;
       const cl::Pose& pose = *cl::pose_of(p_.program.records[i]);
       const bool ends = i + 1 == p_.pass.size() || p_.pass[i + 1] != drop;
       if (dropped.empty() || ends) program.add(cl::Rapid{lifted(pose, 25)});
@@ -310,12 +317,14 @@ class Faults {
     EXPECT_TRUE(found.ok()) << found.error().to_string();
     return found.ok() ? *std::move(found) : verify::CollisionReport{};
   }
-  /// A GOTO in the middle of a pass.
+  /// A GOTO in the middle of a pass that is not at the border.
   std::size_t some_cut() {
+    const int most = *std::max_element(p_.pass.begin(), p_.pass.end());
     for (int i = 0; i < 10'000; ++i) {
       const std::size_t k = 1 + random_.below(gotos_.size() - 2);
       const int pass = p_.pass[gotos_[k]];
-      if (pass >= 0 && p_.pass[gotos_[k - 1]] == pass && p_.pass[gotos_[k + 1]] == pass) return k;
+      if (pass > 0 && pass < most && p_.pass[gotos_[k - 1]] == pass && p_.pass[gotos_[k + 1]] == pass)
+        return k;
     }
     ADD_FAILURE() << "no cut";
     return 1;
@@ -432,7 +441,10 @@ std::optional<Planned> rotary_case(unsigned seed) {
   out.program = rotary::to_cl(*plan, ball, options, "random");
   for (const std::uint32_t source : out.program.source)
     out.pass.push_back(source < plan->points.size() ? static_cast<int>(plan->points[source].path) : -1);
+  // The shank, as wide as the ball, as a part of the cutter.
   out.tool = job::checked_mill(ball);
+  out.tool.length = out.tool.cylinders.front().to;
+  out.tool.cylinders.erase(out.tool.cylinders.begin());
   out.design = {part->mesh, {}, job::machined_triangles(*part), part->deflection_mm};
   out.gouge_mm = 1.02 * options.tolerance_mm;
   out.excess_mm = 1.05 * options.scallop + 2 * options.tolerance_mm;
@@ -464,7 +476,8 @@ std::optional<Planned> cycle_case(unsigned seed) {
   EXPECT_TRUE(job.ok()) << job.error().to_string();
   if (!job) return {};
   Planned out;
-  out.program = job->cl;
+  // (A point of an arc cannot be moved by itself.)
+  out.program = job::as_lines(*job, 0.001);
   // Along x, to and fro: a pass is what goes one way for long.
   int pass = -1;
   std::vector<std::size_t> run;
