@@ -21,6 +21,12 @@ export interface Stats { frames: number; frameMs: number; pickMs: number; stockM
 
 /** Ways in sight that are drawn with a width, by a graphics card and without one. */
 const RIBBONS = 400_000, RIBBONS_SOFTWARE = 12_000;
+const LARGE = 60_000; // nodes and triangles
+
+function software(gl: WebGL2RenderingContext | null): boolean {
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  return !!gl && !!info && /swiftshader|llvmpipe|software|basic render/i.test(String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
+}
 const CURSOR = 9, FINGER = 20; // CSS pixels about them that count as under them
 
 /** What is looked at: bodies and cuts; rapids only when there is nothing else. */
@@ -74,13 +80,14 @@ export class Stage {
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "Part and tool path. Shift and arrows turn, Alt and arrows move, + and - zoom.");
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, stencil: true, powerPreference: "high-performance" });
+    // Without a graphics card much is drawn slowly: a large scene then goes without smooth edges.
+    const amount = scene.path.count + scene.meshes.reduce((n, m) => n + m.index.length / 3, 0), slow = amount > LARGE && software(document.createElement("canvas").getContext("webgl2"));
+    const gl = canvas.getContext("webgl2", { antialias: !slow, alpha: false, stencil: true, powerPreference: "high-performance" });
     if (!gl) { this.withoutGraphics(); return; }
     box.append(canvas);
     this.renderer = new WebGLRenderer({ canvas, context: gl });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
-    const info = gl.getExtension("WEBGL_debug_renderer_info"), name = info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
-    this.ribbons = /swiftshader|llvmpipe|software|basic render/i.test(name) ? RIBBONS_SOFTWARE : RIBBONS;
+    this.ribbons = software(gl) ? RIBBONS_SOFTWARE : RIBBONS;
     this.fill();
     this.connect(canvas);
   }

@@ -53,6 +53,7 @@ export class PathLines {
   private moving = { value: 0 };
   private ahead = { value: 1 };
   private spacing: number; // mm, about
+  private only: number | null = null;
 
   constructor(private ctx: Context, size: Vector3) {
     const sides = [size.x, size.y, size.z].sort((a, b) => b - a);
@@ -95,6 +96,7 @@ export class PathLines {
       chain.paint(i, c[0], c[1], c[2], kind | (state.only !== null && path.group[i] !== state.only ? Look.hidden : 0));
     }
     chain.painted();
+    if (state.only !== this.only) { this.only = state.only; chain.forget(); }
     this.bands?.colour.set(theme.dark ? "#ff9d5c" : "#e8590c");
     this.hover.colour(theme.accent); this.picked.colour(theme.hit);
   }
@@ -112,6 +114,7 @@ export class PathLines {
     if (this.chain.point.length > 3) {
       const few = this.chain.cull(matrix) <= most;
       this.ribbon.visible = few; this.thread.visible = !few;
+      if (!few) this.thread.geometry.setIndex(this.chain.thinned(pixel / this.ctx.shared.pixel.value));
     }
     if (this.bands) this.bands.mesh.visible = this.bands.kerf > 1.2 * pixel;
     const { heat, show } = this.ctx.store.state, fits = COVER * this.spacing / pixel, part = show.part && this.ctx.scene.meshes.length > 0;

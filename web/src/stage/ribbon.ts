@@ -7,6 +7,7 @@ import { CLIP_FRAGMENT, CLIP_VERTEX } from "./materials";
 
 const TEXELS = 2048; // a row
 const PIECE = 512; // ways that are left out together
+const LONGEST = 4, NEAR = 0.3, MOST_SKIPPED = 64; // pixels, nodes: of a thread's chords
 
 /** What a way looks like; as path.kind where it is one. */
 export const Look = { dashed: 0, plain: 1, thin: 4, hidden: 128 } as const;
@@ -70,6 +71,7 @@ export class Chain {
   readonly geometry = new BufferGeometry();
   readonly flat: BufferAttribute; // the same colours, for threads
   private boxes: Box3[] = []; // of PIECE ways each
+  private levels = new Map<number, BufferAttribute>(); // by the logarithm of a pixel's size
   constructor(readonly point: Float32Array) {
     const n = point.length / 3, rows = Math.max(1, Math.ceil(n / TEXELS)), place = new Float32Array(4 * rows * TEXELS), ways = Math.max(0, n - 1);
     this.tint = new Uint8Array(4 * rows * TEXELS);
@@ -92,6 +94,33 @@ export class Chain {
     t[k] = 255 * r + 0.5; t[k + 1] = 255 * g + 0.5; t[k + 2] = 255 * b + 0.5; t[k + 3] = look;
   }
   painted(): void { this.tints.needsUpdate = true; this.flat.needsUpdate = true; }
+  /** After looks changed. */
+  forget(): void { this.levels.clear(); }
+  /** Nodes enough for lines of one pixel where a pixel is `size` mm: ends of looks stay, others are left out while the chord
+   *  is shorter than LONGEST pixels and passes each of them within NEAR pixels. */
+  thinned(size: number): BufferAttribute {
+    const level = Math.floor(Math.log2(size)), kept = this.levels.get(level);
+    if (kept) return kept;
+    const n = this.point.length / 3, p = this.point, t = this.tint, far = (LONGEST * 2 ** level) ** 2, near = (NEAR * 2 ** level) ** 2, out = new Uint32Array(n);
+    let made = n > 0 ? 1 : 0, from = 0;
+    for (let i = 1; i < n; ++i) {
+      // Whether the chord from `from` may go on to i + 1.
+      const last = i + 1 === n || t[4 * i + 3] !== t[4 * i + 7] || i - from >= MOST_SKIPPED;
+      let skip = false;
+      if (!last) {
+        const ax = p[3 * from]!, ay = p[3 * from + 1]!, az = p[3 * from + 2]!, dx = p[3 * i + 3]! - ax, dy = p[3 * i + 4]! - ay, dz = p[3 * i + 5]! - az, dd = dx * dx + dy * dy + dz * dz;
+        skip = dd <= far;
+        for (let k = from + 1; skip && k <= i; ++k) {
+          const x = p[3 * k]! - ax, y = p[3 * k + 1]! - ay, z = p[3 * k + 2]! - az, s = dd > 0 ? Math.min(1, Math.max(0, (x * dx + y * dy + z * dz) / dd)) : 0;
+          skip = (x - s * dx) ** 2 + (y - s * dy) ** 2 + (z - s * dz) ** 2 <= near;
+        }
+      }
+      if (!skip) { out[made++] = i; from = i; }
+    }
+    const index = new BufferAttribute(out.slice(0, made), 1);
+    this.levels.set(level, index);
+    return index;
+  }
   /** Leaves out what `matrix` (to clip space) puts beside the screen. How many ways are left. For objects with materials in a list. */
   cull(matrix: Matrix4): number {
     const ways = Math.max(0, this.point.length / 3 - 1), { geometry } = this;
