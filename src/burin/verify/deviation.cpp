@@ -25,12 +25,12 @@ constexpr std::size_t kTile = 64;
 constexpr std::size_t kTilesAtOnce = 4096;
 // Between the samples so much is left to find, in resolutions.
 constexpr double kGap = 2;
-// Tiles with the worst samples, and steps of the search in one of them, in one of the others, and in all of those
-// together that need more.
+// Tiles with the worst samples, steps of the search in one of them and in one of the others, and in all of
+// those together that need more.
 constexpr std::size_t kFirst = 32;
-constexpr std::size_t kStepsFirst = 200'000;
-constexpr std::size_t kStepsTile = 4'000;
-constexpr std::size_t kStepsLeft = 20'000'000;
+constexpr std::size_t kStepsFirst = 5'000;
+constexpr std::size_t kStepsTile = 1'000;
+constexpr std::size_t kStepsLeft = 5'000'000;
 // A histogram shows so many of the samples within its ends (the rest is in its outermost bins), and is never
 // narrower than this to either side, mm.
 constexpr double kUsual = 0.995;
@@ -134,14 +134,15 @@ class Measure {
       }
     };
     collect();
-    if (!search(worst, &TileWorst::gouge, "worst gouge") || !search(worst, &TileWorst::excess, "worst excess"))
+    if (!search(worst, &TileWorst::gouge, "worst gouge") ||
+        !search(worst, &TileWorst::excess, "worst excess"))
       return stopped();
     report_.gouge = worst.gouge;
     report_.excess = worst.excess;
     report_.bound_mm = options_.resolution_mm + path_.motion_mm;
     for (const TileWorst& w : tiles_)
-      report_.bound_mm = std::max(
-          {report_.bound_mm, w.gouge_most - worst.gouge.mm, w.excess_most - worst.excess.mm});
+      report_.bound_mm =
+          std::max({report_.bound_mm, w.gouge_most - worst.gouge.mm, w.excess_most - worst.excess.mm});
     add_areas();
     return std::move(report_);
   }
@@ -178,8 +179,8 @@ class Measure {
     }
   }
 
-  /// The worst between the samples. First in the tiles with the worst samples, so that the others need only be
-  /// shown to have no more; those that need more steps than usual get what is left of them.
+  /// The worst between the samples. First in the tiles with the worst samples, so that the others need only
+  /// be shown to have no more; those that need more steps than usual get what is left of them.
   bool search(TileWorst& worst, WorstDeviation TileWorst::*which, std::string_view stage) {
     const bool gouge = which == &TileWorst::gouge;
     std::vector<std::size_t> tiles(tiles_.size());
@@ -193,7 +194,7 @@ class Measure {
     if (!round(head, worst, which, kStepsFirst, stage) || !round(rest, worst, which, kStepsTile, stage))
       return false;
     std::vector<std::size_t> open;
-    for (const std::size_t t : rest)
+    for (const std::size_t t : tiles)
       if (gouge ? tiles_[t].gouge_open : tiles_[t].excess_open) open.push_back(t);
     if (open.empty()) return true;
     return round(open, worst, which, std::max(kStepsTile, kStepsLeft / open.size()), stage);
@@ -210,7 +211,8 @@ class Measure {
         mine.gouge = found.gouge, mine.gouge_most = found.gouge_most, mine.gouge_open = found.gouge_open;
       } else {
         const TileWorst found = search.excess(index(t), count(t), moments_, known, limits);
-        mine.excess = found.excess, mine.excess_most = found.excess_most, mine.excess_open = found.excess_open;
+        mine.excess = found.excess, mine.excess_most = found.excess_most,
+        mine.excess_open = found.excess_open;
       }
     });
     for (const std::size_t t : tiles)
