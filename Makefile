@@ -3,7 +3,7 @@
 SHELL := /bin/bash
 JOBS ?= $(shell nproc)
 
-.PHONY: help setup configure build demo test bench fuzz format format-check tidy clean
+.PHONY: help setup configure build demo test bench fuzz page page-check format format-check tidy clean
 
 help:            ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## */\t/' | expand -t 16
@@ -22,6 +22,7 @@ demo: build      ## cut three example parts and say where the pictures are
 	@scripts/demo build/release/apps/burin/burin out/demo
 
 test: configure  ## all tests
+	@scripts/page deps || [ $$? = 75 ] # the tests of the page say that they were left out
 	@cmake --build --preset release -j $(JOBS)
 	@ctest --preset release -j $(JOBS)
 
@@ -34,6 +35,12 @@ fuzz: setup      ## run every fuzzer for SECONDS_EACH (default 60) seconds under
 	@cmake --preset fuzz >/dev/null
 	@cmake --build --preset fuzz -j $(JOBS) --target fuzzers
 	@scripts/fuzz build/fuzz/fuzz $${SECONDS_EACH:-60}
+
+page: setup      ## make the viewer's page from web/ after a change
+	@scripts/page build
+
+page-check: setup ## is data/pages/viewer.html what web/ makes?
+	@scripts/page check
 
 format:          ## format the sources in place
 	@git ls-files '*.h' '*.cpp' | xargs clang-format-14 -i

@@ -11,12 +11,14 @@
 #include "burin/cl/apt.h"
 #include "burin/geom/surface/evaluate.h"
 #include "burin/geom/surface/modify.h"
+#include "burin/geom/surface/tessellate.h"
 #include "burin/job/cycle_job.h"
 #include "burin/nc/program.h"
 #include "burin/post/emit.h"
 #include "burin/servo/measure.h"
 #include "burin/verify/scallop.h"
 #include "burin/verify/sweep.h"
+#include "verify_support.h"
 
 namespace burin {
 namespace {
@@ -98,6 +100,27 @@ bool reversed_normal(const NurbsSurface& s) {
   return geom::normal(s, 0.5 * (u.lo + u.hi), 0.5 * (v.lo + v.hi)).z < 0;
 }
 
+/// What verify says of the CL data: a ball of radius 3 under a holder, on all surfaces of the program.
+void expect_verified(const job::CycleJob& job, double excess_mm) {
+  const job::CycleOptions defaults;
+  verified::Design design;
+  for (const job::CycleSurfaces& joined : job.surfaces)
+    for (const auto& patch : joined.composite.surfaces) {
+      auto triangles = geom::tessellate(patch.surface, false, {}, {0.0005, 0, 2'000'000});
+      ASSERT_TRUE(triangles.ok()) << triangles.error().to_string();
+      if (reversed_normal(patch.surface))
+        for (auto& t : triangles->mesh.triangles) std::swap(t[1], t[2]);
+      const auto first = static_cast<std::uint32_t>(design.mesh.vertices.size());
+      for (const Point3& v : triangles->mesh.vertices) design.mesh.vertices.push_back(v);
+      for (const auto& t : triangles->mesh.triangles)
+        design.mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+      design.deflection_mm = std::max(design.deflection_mm, triangles->deflection_mm);
+    }
+  const verified::Says says =
+      verified::say(design, verified::path_of(job.cl, {3, 3, 15, {{20, 15, 60, true}}}), 0.5);
+  verified::expect_clean(says, defaults.tolerance_mm, excess_mm);
+}
+
 TEST(CycleJob, ScallopIsWhatWasAskedFor) {
   std::mt19937 random(20);
   for (int i = 0; i < 6; ++i) {
@@ -115,6 +138,7 @@ TEST(CycleJob, ScallopIsWhatWasAskedFor) {
     }
     EXPECT_LT(report.gouge_max_mm, 1e-3);
     EXPECT_GT(report.ridges.size(), 10u);
+    expect_verified(job, 0.02 * 1.02 + job.fit_deviation_mm);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "burin/cl/apt.h"
+#include "burin/job/verify_laser.h"
 #include "burin/nc/program.h"
 #include "burin/plan/laser/drawing_fixture.h"
 #include "burin/plan/laser/laser.h"
@@ -237,6 +238,61 @@ TEST(LaserRoundTrip, TheCutIsAtTheOffsetFromTheOutlines) {
       }
     }
   }
+}
+
+/// The end of it all: the part that the control would cut, held against the drawing by code that knows no
+/// offset. Leads, loops, overcuts, chords and the decimals are in it.
+TEST(LaserRoundTrip, ThePartIsWhatWasDrawn) {
+  const std::vector<std::string> dialects = post::dialect_names();
+  int clean = 0;
+  for (std::uint64_t seed = 0; seed < kParts; ++seed) {
+    SCOPED_TRACE(seed);
+    LaserOptions o = options_for(seed);
+    o.offset_mm = std::abs(o.offset_mm);
+    o.copies = {};
+    o.micro_joints.per_contour = 0;
+    const fixture::Sketch sketch = fixture::random_part(seed, seed % 3 == 2);
+    Diagnostics planning, reading;
+    auto job = laser::plan_laser(sketch.drawing, o, planning);
+    ASSERT_TRUE(job) << job.error().to_string();
+    const post::Dialect dialect = *post::find_dialect(dialects[seed % dialects.size()]);
+    const cl::Program program = through(job->toolpath.program, dialect).program;
+    auto outlines = job::make_laser_outlines(sketch.drawing, {}, reading);
+    ASSERT_TRUE(outlines) << outlines.error().to_string();
+    verify::BeamCheckOptions checking;
+    checking.kerf_mm = 2 * o.offset_mm;
+    auto report = verify::check_beam(outlines->outlines, program, checking);
+    ASSERT_TRUE(report) << report.error().to_string();
+    EXPECT_LE(report->bound_mm, 0.001);
+    // Leads may take the tolerance once more than the path (docs/laser-toolpath.md).
+    const double unit = std::pow(10.0, -dialect.decimals);
+    const double off = o.tolerance.path_mm + outlines->bound_mm + 2 * unit;
+    const double leads = o.lead.kind == laser::LeadKind::none && o.corners.kind != laser::Corners::loop
+                             ? 0
+                             : o.tolerance.path_mm;
+    EXPECT_LE(report->gouge.mm, off + leads);
+    // Nothing is uncut but what the planner said it could not cut.
+    const bool told = planning.anything_left_out();
+    EXPECT_TRUE(told || report->uncut_mm == 0) << report->uncut_mm;
+    if (planning.count("contour_vanished") + planning.count("contours_merged") > 0) {
+      EXPECT_FALSE(report->uncut_outlines.empty());
+    }
+    if (!told) {
+      EXPECT_LE(report->excess.mm, off);
+      EXPECT_EQ(report->gouge_area_mm2 + report->excess_area_mm2, 0);
+      ++clean;
+    }
+    // The beam on the wrong side takes a kerf, and leaves one.
+    if (seed % 5 == 0 && !told) {
+      o.offset_mm = -o.offset_mm;
+      auto wrong = laser::plan_laser(sketch.drawing, o, planning);
+      ASSERT_TRUE(wrong);
+      auto bad = verify::check_beam(outlines->outlines, wrong->toolpath.program, checking);
+      ASSERT_TRUE(bad);
+      EXPECT_GT(bad->gouge.mm, checking.kerf_mm - 2 * off);
+    }
+  }
+  EXPECT_GT(clean, static_cast<int>(kParts) / 3);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "burin/plan/orient/orient.h"
 #include "burin/plan/orient/to_cl.h"
 #include "burin/verify/strip_check.h"
+#include "verify_support.h"
 
 namespace burin {
 namespace {
@@ -76,6 +77,7 @@ struct Milled {
   OrientPlan plan;
   job::OrientCheck check;
   verify::StripReport strips;
+  cl::Program program;
 };
 
 Milled milled(const Part& part, const model::Mill& mill, const OrientOptions& options) {
@@ -88,6 +90,7 @@ Milled milled(const Part& part, const model::Mill& mill, const OrientOptions& op
   out.plan = orient::plan(part, scene, limits, {}, nullptr, options, workers, diagnostics, nullptr).value();
   const auto path = orient::to_cl(part, scene, limits, out.plan.paths, {});
   out.check = job::check_orient_job(part, mill, path->program, {.threads = 0}).value();
+  out.program = path->program;
   std::vector<verify::StripPass> passes;
   for (const orient::OrientedPath& from : out.plan.paths) {
     verify::StripPass pass;
@@ -131,6 +134,13 @@ TEST_P(OrientJob, StripsLeaveTheScallopAndNoGouge) {
     EXPECT_LE(m->check.gouge_max_mm(), (1 + kMotionShare) * options.tolerance_mm + m->check.bound_mm);
     EXPECT_LE(scallop_inside(*m, 90), (1 + kStripShare) * options.scallop_mm);
   }
+  // The program as a whole: nothing collides, and the deviation agrees with the two others of verify. (What
+  // the disc has not come to at the ends of the passes is left.)
+  const verified::Says says =
+      verified::say({part.mesh, {}, {}, part.deflection_mm},
+                    verified::path_of(strip.program, job::checked_mill(mill_of(GetParam()))), 1);
+  verified::expect_clean(says, (1 + kMotionShare) * options.tolerance_mm, 5);
+  EXPECT_GE(says.deviation.excess.mm, scallop_inside(strip, 90) - says.bound_mm - 0.001);
   // Nowhere a longer way than with one tilt for all, and a shorter one where the bend differs from path to
   // path.
   EXPECT_LE(strip.plan.cut_mm, 1.02 * sturz.plan.cut_mm);

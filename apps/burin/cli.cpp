@@ -383,6 +383,8 @@ int Cli::execute(const Command& command, const std::string& command_line, const 
     print_error((placed ? "" : "burin " + command.operation + ": ") + done.error().to_string());
     return done.error().code == ErrorCode::usage ? kWrongUsage : kFailed;
   }
+  for (const std::string& why : session.short_of()) print_error("burin " + command.operation + ": " + why);
+  if (!session.short_of().empty()) return kFailed;
   return session.diagnostics.anything_left_out() ? kLeftOut : kDone;
 }
 

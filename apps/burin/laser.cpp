@@ -8,14 +8,14 @@
 
 #include "burin/base/text.h"
 #include "burin/cl/apt.h"
-#include "burin/io/dxf/read_dxf.h"
-#include "burin/io/svg/read_svg.h"
+#include "burin/job/verify_laser.h"
 #include "burin/model/kerf.h"
 #include "burin/post/emit.h"
 #include "burin/view/picture.h"
 #include "cli.h"
 #include "commands.h"
 #include "kerf_options.h"
+#include "layer_options.h"
 
 namespace burin::cli {
 namespace {
@@ -75,37 +75,7 @@ Result<Kerf> kerf_of(const LaserArgs& args, Session& session) {
 Result<io::Drawing> read_drawing(const LaserArgs& args, Session& session) {
   auto bytes = session.read_input(args.drawing);
   if (!bytes) return bytes.error();
-  io::ReadOptions options;
-  options.file_name = args.drawing;
-  options.units = args.units;
-  const std::string extension = to_lower(fs::path(args.drawing).extension().string());
-  if (extension == ".dxf") return io::read_dxf(*bytes, options, session.diagnostics);
-  if (extension == ".svg") return io::read_svg(*bytes, options, session.diagnostics);
-  return Error{
-      ErrorCode::usage, "is of no known kind (a drawing named .dxf or .svg)", {.file = args.drawing}};
-}
-
-Result<void> parse_layers(const std::vector<std::string>& lists, laser::LaserOptions& plan) {
-  for (const std::string& list : lists) {
-    for (std::size_t from = 0; from <= list.size();) {
-      const std::size_t comma = std::min(list.find(',', from), list.size());
-      const std::string item(trim(std::string_view(list).substr(from, comma - from)));
-      from = comma + 1;
-      if (item.empty()) continue;
-      const std::size_t equals = item.rfind('=');
-      const std::string how =
-          equals == std::string::npos ? "" : to_lower(trim(std::string_view(item).substr(equals + 1)));
-      const std::string name(trim(std::string_view(item).substr(0, equals)));
-      if (name.empty() || (how != "cut" && how != "engrave" && how != "ignore")) {
-        return usage("--layers: " + item +
-                     " is not understood (NAME=cut, NAME=engrave or NAME=ignore, separated by commas)");
-      }
-      plan.layers[name] = how == "cut"       ? laser::Treatment::cut
-                          : how == "engrave" ? laser::Treatment::engrave
-                                             : laser::Treatment::ignore;
-    }
-  }
-  return {};
+  return job::read_drawing(*bytes, args.drawing, args.units, session.diagnostics);
 }
 
 Result<void> parse_copies(const std::string& text, laser::CopyOptions& copies) {
@@ -280,7 +250,9 @@ Result<laser::LaserOptions> plan_options(const LaserArgs& args, const Kerf& kerf
     plan.feed_mm_min = 1000;
     session.diagnostics.info("default_feed", "no --speed given: 1000 mm/min is used");
   }
-  if (auto ok = parse_layers(args.layers, plan); !ok) return ok.error();
+  auto layers = parse_layers(args.layers);
+  if (!layers) return layers.error();
+  plan.layers = std::move(*layers);
   if (auto ok = parse_copies(args.copies, plan.copies); !ok) return ok.error();
   return plan;
 }
@@ -351,13 +323,7 @@ void add_kerf_options(CLI::App& app, LaserArgs& a) {
 
 void add_plan_options(CLI::App& app, LaserArgs& a) {
   laser::LaserOptions& p = a.plan;
-  add_choice<laser::Side>(app, "--side", p.side,
-                          {{"auto", laser::Side::automatic},
-                           {"outside", laser::Side::outside},
-                           {"inside", laser::Side::inside},
-                           {"on", laser::Side::on}},
-                          "where the beam runs: by nesting, one side for all, or on the line");
-  add_number(app, "--join", p.tolerance.join_mm, kLength, "ends this close are joined (default 0.01)");
+  add_drawing(app, p.side, a.units, p.tolerance.join_mm);
   add_choice<geom::FitMethod>(app, "--fit", p.fit,
                               {{"minimal", geom::FitMethod::minimal}, {"bisect", geom::FitMethod::bisect}},
                               "fewest arcs, or the paper's bisection");
@@ -381,10 +347,7 @@ void add_plan_options(CLI::App& app, LaserArgs& a) {
                                 {"climb", laser::Direction::climb},
                                 {"conventional", laser::Direction::conventional}},
                                "cutting direction");
-  app.add_option("--layers", a.layers, "NAME=cut|engrave|ignore,... by layer name or #rrggbb colour")
-      ->type_name("LIST");
-  add_choice<io::Units>(app, "--units", a.units, {{"mm", io::Units::mm}, {"inch", io::Units::inch}},
-                        "unit of the drawing's numbers, whatever the file says");
+  add_layers(app, a.layers);
   app.add_flag("--no-arcs", a.no_arcs, "lines only, chords within the tolerance");
   add_number(app, "--overcut", p.overcut_mm, kLength, "cut on past the start of a closed contour");
   add_integer(app, "--micro-joints", p.micro_joints.per_contour, 0, 1000, "bridges left per closed contour");

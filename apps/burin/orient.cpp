@@ -13,6 +13,7 @@
 #include "burin/plan/orient/to_cl.h"
 #include "burin/post/emit_tcp.h"
 #include "burin/view/orient_html.h"
+#include "burin/view/orient_scene.h"
 #include "cli.h"
 #include "commands.h"
 #include "joint_options.h"
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 using geom::degrees;
 
 struct OrientArgs {
-  std::string job, points;
+  std::string job, points, view;
   std::optional<double> tolerance;
   bool tcp = false, joints = false;
 };
@@ -184,7 +185,8 @@ Result<void> judge(const OrientArgs& args, const OrientSetup& setup, const orien
     return Error{ErrorCode::geometry, "the job has no contact points (faces that its paths cross)", {}};
   const Common& c = session.common;
   const bool none = plan.unreachable == plan.contact_points;
-  const bool reported = !args.points.empty() || !c.json.empty() || !c.html.empty() || !c.svg.empty();
+  const bool reported =
+      !args.points.empty() || !c.json.empty() || !c.html.empty() || !c.svg.empty() || !args.view.empty();
   if (none && !reported)
     return Error{ErrorCode::geometry,
                  "none of the " + std::to_string(plan.contact_points) +
@@ -363,8 +365,9 @@ std::vector<view::OrientPicture::PointMap> point_maps(const OrientSetup& setup, 
   return maps;
 }
 
-std::string html(const OrientArgs& args, const OrientSetup& setup, const OrientRun& run,
-                 const orient::Scene& scene, const orient::MachineLimits& limits, const Session& session) {
+view::OrientPicture picture_of(const OrientArgs& args, const OrientSetup& setup, const OrientRun& run,
+                               const orient::Scene& scene, const orient::MachineLimits& limits,
+                               const Session& session) {
   view::OrientPicture picture;
   picture.title = fs::path(args.job).stem().string();
   picture.command_line = session.command_line;
@@ -374,7 +377,9 @@ std::string html(const OrientArgs& args, const OrientSetup& setup, const OrientR
   picture.options = &setup.file.options;
   picture.diagnostics = &session.diagnostics;
   picture.maps = point_maps(setup, run, scene, limits, static_cast<unsigned>(session.common.threads));
-  if (run.nc) picture.nc_text = run.nc->text;
+  if (run.nc) picture.nc_text = run.nc->text, picture.nc_line_to_record = run.nc->line_to_record;
+  picture.program = &run.path.program;
+  picture.machine = setup.machine_or_null();
   const Report& r = session.report;
   const auto add = [&](const char* group, const std::string& name, const Json& value, int decimals,
                        const char* unit) {
@@ -388,7 +393,7 @@ std::string html(const OrientArgs& args, const OrientSetup& setup, const OrientR
   for (const auto& [key, value] : r.lengths_mm.items()) add("Lengths", key, value, 1, " mm");
   for (const auto& [key, value] : r.time_s.items())
     if (key != "planning") add("Time", key, value, 1, " s");
-  return view::orient_html(picture);
+  return picture;
 }
 
 // --- the run
@@ -399,8 +404,16 @@ Result<void> put_outputs(const OrientArgs& args, const OrientSetup& setup, const
   if (auto ok = session.put_made(nc_path, [&] { return run.nc->text; }); !ok) return ok;
   if (auto ok = session.put_made(args.points, [&] { return points_csv(run.plan); }); !ok) return ok;
   if (auto ok = session.put_made(cl_path, [&] { return cl::write_apt(run.path.program); }); !ok) return ok;
-  return session.put_made(session.common.html,
-                          [&] { return html(args, setup, run, scene, limits, session); });
+  if (session.common.html.empty() && args.view.empty()) return {};
+  const view::OrientPicture picture = picture_of(args, setup, run, scene, limits, session);
+  if (auto ok = session.put_made(session.common.html, [&] { return view::orient_html(picture); }); !ok)
+    return ok;
+  if (args.view.empty()) return {};
+  auto shown = view::orient_scene(picture);
+  if (!shown) return shown.error();
+  auto page = view::viewer_page(*shown);
+  if (!page) return page.error();
+  return session.put(args.view, *std::move(page));
 }
 
 /// Tool path, and what the machine makes of it.
@@ -459,7 +472,7 @@ Result<OutputNames> output_names(const OrientArgs& args, const OrientSetup& setu
         {}};
   OutputNames names{c.output, c.cl};
   const bool nothing = args.points.empty() && c.output.empty() && c.cl.empty() && c.json.empty() &&
-                       c.html.empty() && c.svg.empty();
+                       c.html.empty() && c.svg.empty() && args.view.empty();
   if (!nothing) return names;
   std::string& name = setup.machine ? names.nc : names.cl;
   name = fs::path(args.job).replace_extension(setup.machine ? ".ngc" : ".cl").string();
@@ -470,8 +483,9 @@ Result<OutputNames> output_names(const OrientArgs& args, const OrientSetup& setu
 Result<void> run_orient(const OrientArgs& args, Session& session) {
   auto dialect = post::find_dialect(session.common.dialect);
   if (!dialect) return dialect.error();
-  if (!args.points.empty())
-    if (auto ok = session.reserve_output(args.points); !ok) return ok;
+  for (const std::string& path : {args.points, args.view})
+    if (!path.empty())
+      if (auto ok = session.reserve_output(path); !ok) return ok;
   auto setup = load_orient(args.job, args.tolerance, session);
   if (!setup) return setup.error();
   auto names = output_names(args, *setup, session);
@@ -489,7 +503,7 @@ Result<void> run_orient(const OrientArgs& args, Session& session) {
   if (auto ok = make_motion(args, *setup, scene, limits, *dialect, !names->nc.empty(), run, session); !ok)
     return in_file(ok.error(), args.job);
   std::optional<job::OrientCheck> check;
-  if (!session.common.json.empty() || !session.common.html.empty()) {
+  if (!session.common.json.empty() || !session.common.html.empty() || !args.view.empty()) {
     auto checked = check_motion(args, *setup, run, session);
     if (!checked) return in_file(checked.error(), args.job);
     check = std::move(*checked);
@@ -515,6 +529,8 @@ void add_orient(Cli& cli) {
       [args](Session& session) { return run_orient(*args, session); });
   add_text(app, "JOB.toml", args->job, "FILE", "part, tool, operation and machine")->required();
   add_text(app, "--points", args->points, "FILE", "contact points, angles, effective radii and poses as CSV");
+  add_text(app, "--view", args->view, "FILE",
+           "the path in the viewer's page: played, with tilt and yaw of the contact points");
   CLI::Option* tcp =
       app.add_flag("--tcp", args->tcp, "NC for tool-centre-point control (G43.4): tip and rotary angles");
   app.add_flag("--joints", args->joints, "NC in joint coordinates, inverse-time feed G93 (default)")

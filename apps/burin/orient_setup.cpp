@@ -3,34 +3,10 @@
 
 #include <filesystem>
 
-#include "burin/model/machine.h"
+#include "burin/job/machine_file.h"
 
 namespace burin::cli {
-namespace {
-
 namespace fs = std::filesystem;
-
-Result<std::optional<kinematics::Kinematics>> machine_of(const std::string& name, const fs::path& folder,
-                                                         Session& session) {
-  if (name == "none") return std::optional<kinematics::Kinematics>();
-  // A machine file stands beside the job, a preset has no ending.
-  const bool from_file = fs::path(name).extension() == ".toml";
-  const std::string path = (folder / name).string();
-  const auto machine = [&]() -> Result<model::Machine> {
-    if (!from_file) return model::find_machine(name);
-    auto text = session.read_input(path);
-    if (!text) return text.error();
-    return model::parse_machine(*text, path);
-  }();
-  if (!machine) return machine.error();
-  auto made = kinematics::Kinematics::make(*machine);
-  if (made) return std::optional<kinematics::Kinematics>(std::move(*made));
-  Error error = made.error();
-  if (from_file && error.where.file.empty()) error.where.file = path;
-  return error;
-}
-
-}  // namespace
 
 orient::MachineLimits OrientSetup::limits() const {
   if (!machine) return {};
@@ -60,10 +36,10 @@ Result<OrientSetup> load_orient(const std::string& job_path, std::optional<doubl
   setup.file = std::move(*file);
   if (tolerance) setup.file.options.tolerance_mm = setup.file.options.paths.chord_mm = *tolerance;
   const fs::path folder = fs::path(job_path).parent_path();
-  auto machine = machine_of(setup.file.machine, folder, session);
+  const auto read = [&session](const std::string& path) { return session.read_input(path); };
+  auto machine = job::load_machine(setup.file.machine, folder.string(), read);
   if (!machine) return machine.error();
   setup.machine = std::move(*machine);
-  const auto read = [&session](const std::string& path) { return session.read_input(path); };
   if (!setup.file.contacts.empty()) {
     const std::string path = (folder / setup.file.contacts).string();
     auto csv = read(path);

@@ -69,6 +69,11 @@ class Session {
   /// To standard output after all files are written: what a command that only answers prints.
   void print(std::string_view text) { answer_ += text; }
 
+  /// What was asked for does not hold, though everything was done: the files are written, and the exit code
+  /// is that of a failure.
+  void fall_short(std::string why) { short_of_.push_back(std::move(why)); }
+  const std::vector<std::string>& short_of() const { return short_of_; }
+
   /// Progress bar on standard error: only on a terminal, after a second of work, gone when done.
   ProgressSink* progress();
   /// Threads as asked for, on all processes of the run.
@@ -103,6 +108,7 @@ class Session {
   std::vector<std::string> protected_;
   std::vector<Output> outputs_;
   std::string answer_;
+  std::vector<std::string> short_of_;
   std::unique_ptr<ProgressSink> progress_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

@@ -128,7 +128,7 @@ class Reader {
   // ---------------------------------------------------------------------------------------------
 
   Result<void> read() {
-    static constexpr std::array<Entry, 23> kWords = {{
+    static constexpr std::array<Entry, 24> kWords = {{
         {"BEAM", &Reader::beam},        {"CIRCLE", &Reader::circle},  {"COOLNT", &Reader::coolant},
         {"CUTTER", &Reader::cutter},    {"DELAY", &Reader::delay},    {"END", &Reader::end},
         {"FEDRAT", &Reader::feed},      {"FINI", &Reader::fini},      {"FROM", &Reader::from},
@@ -136,7 +136,7 @@ class Reader {
         {"LOADTL", &Reader::load},      {"MULTAX", &Reader::nothing}, {"OPSTOP", &Reader::keep},
         {"PARTNO", &Reader::part},      {"PPRINT", &Reader::print},   {"RAPID", &Reader::rapid},
         {"REMARK", &Reader::nothing},   {"SPINDL", &Reader::spindle}, {"STOP", &Reader::keep},
-        {"TOOLNO", &Reader::tool},      {"UNITS", &Reader::units},
+        {"TLDATA", &Reader::tool_data}, {"TOOLNO", &Reader::tool},    {"UNITS", &Reader::units},
     }};
     for (const Entry& entry : kWords)
       if (entry.word == statement_->word) return (this->*entry.handler)();
@@ -148,10 +148,10 @@ class Reader {
 
   /// Words after which a GOTO is no longer the plain motion it says.
   static bool changes_motion(std::string_view word) {
-    static constexpr std::array<std::string_view, 21> kWords = {
-        "CALL",   "CIRCUL", "COPY",   "CUTCOM", "CYCLE",  "GOHOME", "INDEX",
-        "MACRO",  "MATRIX", "MIRROR", "MOVARC", "NURBS",  "ORIGIN", "PATTRN",
-        "ROTABL", "ROTATE", "ROTHED", "THREAD", "TRACUT", "TRANS",  "TERMAC"};
+    static constexpr std::array<std::string_view, 29> kWords = {
+        "CALL",   "CIRCUL", "COPY",   "CUTCOM", "CYCLE",  "GOBACK", "GOFWD", "GOHOME", "GOLFT",  "GORGT",
+        "INDEX",  "INDIRV", "MACRO",  "MATRIX", "MIRROR", "MOVARC", "NURBS", "ORIGIN", "PATTRN", "ROTABL",
+        "ROTATE", "ROTHED", "TERMAC", "THREAD", "TLLFT",  "TLON",   "TLRGT", "TRACUT", "TRANS"};
     return std::find(kWords.begin(), kWords.end(), word) != kWords.end();
   }
 
@@ -200,17 +200,25 @@ class Reader {
   Result<void> cutter() {
     const std::size_t count = statement_->parameters.size();
     if (count == 0) return wrong_count("CUTTER/d or CUTTER/d,r");
+    if (count > 2)
+      once(Severity::info, "cutter_shape", "", "of CUTTER/ only the diameter and the corner radius are read");
+    return cutter_sizes(0);
+  }
+  /// TLDATA/MILL,d,r,length,...
+  Result<void> tool_data() {
+    if (statement_->parameters.size() < 3 || !statement_->parameters[0].is("MILL")) return unknown();
+    return cutter_sizes(1);
+  }
+  Result<void> cutter_sizes(std::size_t first) {
     std::array<double, 2> dr{};
-    for (std::size_t i = 0; i < std::min<std::size_t>(count, 2); ++i) {
+    for (std::size_t i = first; i < std::min(statement_->parameters.size(), first + 2); ++i) {
       const auto value = number(i);
       if (!value) return value.error();
       if (*value < 0)
         return error(ErrorCode::range, "a negative size of the cutter (0 or more)",
                      statement_->parameters[i]);
-      dr[i] = *value * scale_;
+      dr[i - first] = *value * scale_;
     }
-    if (count > 2)
-      once(Severity::info, "cutter_shape", "", "of CUTTER/ only the diameter and the corner radius are read");
     // Some systems load first and describe the cutter afterwards.
     if (open_tool_ && *open_tool_ < program_.records.size()) {
       auto& tool = std::get<ToolChange>(program_.records[*open_tool_]);
@@ -416,7 +424,8 @@ class Reader {
   }
 
   Result<void> circle() {
-    if (statement_->parameters.size() != 7) return wrong_count("cx,cy,cz,i,j,k,r");
+    // Some systems add tolerances behind the radius.
+    if (statement_->parameters.size() < 7) return wrong_count("cx,cy,cz,i,j,k,r");
     if (circle_)
       return error(ErrorCode::syntax,
                    "a second CIRCLE/ without a GOTO/ after the first (one GOTO/ for each)");

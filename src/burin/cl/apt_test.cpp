@@ -227,5 +227,29 @@ TEST(Apt, ErrorsSayWhere) {
   EXPECT_FALSE(read_apt("GOTO/1,2,3\nGOTO/1,2,3\n", {.file_name = "a.cl", .max_records = 1}, diagnostics));
 }
 
+TEST(ReadApt, TakesWhatOtherSystemsWrite) {
+  Diagnostics diagnostics;
+  const Program p = read(
+      "TOOL PATH/CAVITY,TOOL,MILL_16\nTLDATA/MILL,16.0,0.8,75.0,0.0,0.0\nMSYS/0,0,0,1,0,0,0,1,0\n"
+      "$$ centerline "
+      "data\nPAINT/PATH\nLOAD/TOOL,1\nINTOL/0.03\nMULTAX/ON\nRAPID\nGOTO/10,0,5\nFEDRAT/MMPM,250\n"
+      "CIRCLE/0,0,5,0,0,1,10,0.03,0.5,16,0.8\nGOTO/0,10,5\nEND-OF-PATH\nFINI\n",
+      &diagnostics);
+  ASSERT_EQ(p.move_count(), 2u);
+  bool loaded = false;
+  for (const Record& record : p.records) {
+    if (const auto* tool = std::get_if<ToolChange>(&record)) loaded = *tool == ToolChange{1, 16, 0.8};
+    if (const auto* arc = std::get_if<Arc>(&record)) {
+      EXPECT_EQ(arc->radius, 10);
+    }
+  }
+  EXPECT_TRUE(loaded);
+  EXPECT_FALSE(diagnostics.anything_left_out());
+  // An arc in words that are not carried out changes the motion: that is said.
+  read("RAPID\nGOTO/0,0,0\nINDIRV/1,0,0\nTLON,GOFWD/(CIRCLE/0,5,0,5),ON,(LINE/0,5,0,5,5,0)\nFINI\n",
+       &diagnostics);
+  EXPECT_TRUE(diagnostics.anything_left_out());
+}
+
 }  // namespace
 }  // namespace burin::cl

@@ -3,25 +3,32 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "burin/verify/path.h"
 
 namespace burin::job {
 namespace {
 
-/// `records[i]`: of the move that ends in the motion's place i.
-Result<OrientCheck> check(const orient::Part& part, const model::Mill& mill, const verify::MillMotion& motion,
-                          const std::vector<std::size_t>& records, const OrientCheckOptions& options) {
-  if (auto ok = model::validate(mill); !ok) return ok.error();
+/// `record_of(i)`: what record i of the program that `path` was made of stands for.
+template <class RecordOf>
+Result<OrientCheck> check(const orient::Part& part, const Result<verify::CheckedPath>& path,
+                          const OrientCheckOptions& options, RecordOf&& record_of) {
+  if (!path) return path.error();
   const auto report = verify::check_mill(
-      part.mesh, checked_mill(mill), motion,
-      {.resolution_mm = options.resolution_mm, .motion_mm = options.motion_mm, .threads = options.threads});
+      part.mesh, *path, {.resolution_mm = options.resolution_mm, .threads = options.threads});
   if (!report) return report.error();
-  OrientCheck out{report->cutter, report->holder, report->bound_mm + part.deflection_mm,
-                  records.empty() ? 0 : records.size() - 1};
+  OrientCheck out{report->cutter, report->holder, report->bound_mm + part.deflection_mm, path->moves.size()};
   for (verify::MillFinding* f : {&out.cutter, &out.holder})
-    if (f->mm > 0) f->move = records[f->move];
+    if (f->mm > 0) f->move = record_of(path->moves[f->move].record);
   return out;
+}
+
+verify::ToolSource source(const model::Mill& mill) {
+  return [mill](const cl::ToolChange&) -> Result<verify::CheckedMill> {
+    if (auto ok = model::validate(mill); !ok) return ok.error();
+    return checked_mill(mill);
+  };
 }
 
 }  // namespace
@@ -43,29 +50,27 @@ verify::CheckedMill checked_mill(const model::Mill& mill) {
 
 Result<OrientCheck> check_orient_job(const orient::Part& part, const model::Mill& mill,
                                      const cl::Program& program, const OrientCheckOptions& options) {
-  verify::PoseMotion poses;
-  std::vector<std::size_t> records;
-  if (program.from) poses.push_back(*program.from), records.push_back(0);
-  for (std::size_t i = 0; i < program.records.size(); ++i) {
-    if (std::holds_alternative<cl::Arc>(program.records[i]))
-      return Error{ErrorCode::unsupported,
-                   "record " + std::to_string(i) + " is an arc (straight moves of the tip can be checked)",
-                   {}};
-    if (const cl::Pose* pose = cl::pose_of(program.records[i])) poses.push_back(*pose), records.push_back(i);
-  }
-  return check(part, mill, std::move(poses), records, options);
+  return check(part, verify::make_checked_path(program, source(mill), {.motion_mm = options.motion_mm}),
+               options, [](std::size_t record) { return record; });
 }
 
 Result<OrientCheck> check_orient_job(const orient::Part& part, const model::Mill& mill,
                                      const kinematics::Kinematics& machine, const kinematics::JointPath& path,
                                      const OrientCheckOptions& options) {
-  verify::JointMotion motion{&machine, {}};
-  std::vector<std::size_t> records;
+  cl::Program program;
+  std::vector<kinematics::Joints> joints;
   for (const kinematics::JointMove& move : path.moves) {
-    motion.joints.push_back(move.to);
-    records.push_back(move.record);
+    const cl::Pose to = machine.forward(move.to);
+    if (move.rapid)
+      program.add(cl::Rapid{to});
+    else
+      program.add(cl::Feed{to});
+    joints.push_back(move.to);
   }
-  return check(part, mill, std::move(motion), records, options);
+  return check(
+      part,
+      verify::make_checked_path(program, joints, {}, machine, source(mill), {.motion_mm = options.motion_mm}),
+      options, [&](std::size_t i) { return path.moves[i].record; });
 }
 
 }  // namespace burin::job

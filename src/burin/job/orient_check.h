@@ -30,7 +30,7 @@ struct OrientCheck {
 };
 
 /// The program as tool-centre-point control runs it: tip straight, axis along the great circle; rapids the
-/// same. Errors: of check_mill; arcs (unsupported).
+/// same. Errors: of make_checked_path and check_mill.
 Result<OrientCheck> check_orient_job(const orient::Part& part, const model::Mill& mill,
                                      const cl::Program& program, const OrientCheckOptions& options = {});
 /// The same program as joint moves of a machine. The first move ends where the check begins.

@@ -50,7 +50,7 @@ TEST(OrientCheck, ByPosesAndByJoints) {
     ASSERT_TRUE(by_poses) << by_poses.error().message;
     EXPECT_NEAR(by_poses->cutter.mm, deep, 0.001);
     EXPECT_NEAR(by_poses->bound_mm, 0.003, 1e-12);
-    EXPECT_EQ(by_poses->moves, 4u);
+    EXPECT_EQ(by_poses->moves, 5u);
     if (deep > 0) {
       EXPECT_TRUE(by_poses->cutter.move == 4 || by_poses->cutter.move == 5);
       EXPECT_LT(by_poses->cutter.triangle, part.design_triangles);

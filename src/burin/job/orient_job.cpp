@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "burin/base/text.h"
+#include "burin/job/job_tables.h"
 #include "burin/model/machine.h"
 #include "burin/model/toml_reader.h"
 
@@ -20,7 +21,6 @@ constexpr double kSmallest = 1e-4;  ///< mm: lengths below are slips too
 constexpr std::size_t kMostFiles = 1000;
 constexpr std::size_t kMostFaces = 100'000;
 constexpr double kMaxTilt = 89;  ///< degrees: beyond, a mill lies on its side
-constexpr int kMostPaths = 100'000;
 
 bool has(const toml::table& table, std::string_view key) {
   return table.get(key) != nullptr;
@@ -127,7 +127,9 @@ model::PropellerData read_propeller(TomlReader& reader, const toml::table& table
   return p;
 }
 
-void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job) {
+}  // namespace
+
+void read_orient_part(TomlReader& reader, const toml::table& table, bool contacts, OrientJobFile& job) {
   reader.only_keys(table, {"surface", "mesh", "propeller", "faces", "flip", "obstacles", "contacts"});
   std::string kind;
   for (const std::string key : {"surface", "mesh", "propeller"}) {
@@ -154,7 +156,7 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
   }
   if (kind == "mesh") {
     job.part = OrientMesh{file(reader, table, "mesh"), flip};
-    if (!has(table, "contacts"))
+    if (contacts && !has(table, "contacts"))
       reader.fail(*table.get("mesh"),
                   "\"mesh\" without \"contacts\": triangles have no paths of their own (contacts = "
                   "\"points.csv\": path,x,y,z,nx,ny,nz,fx,fy,fz)");
@@ -162,6 +164,8 @@ void read_part(TomlReader& reader, const toml::table& table, OrientJobFile& job)
 }
 
 // --- [tool]
+
+namespace {
 
 void read_pieces(TomlReader& reader, const toml::table& table, std::string_view key, model::Mill& mill) {
   for (const toml::table* piece : reader.tables(table, key)) {
@@ -171,8 +175,12 @@ void read_pieces(TomlReader& reader, const toml::table& table, std::string_view 
   }
 }
 
-model::Mill read_tool(TomlReader& reader, const toml::table& table) {
-  reader.only_keys(table, {"kind", "radius", "corner_radius", "length", "shank", "holder", "head"});
+}  // namespace
+
+model::Mill read_mill(TomlReader& reader, const toml::table& table, const std::vector<std::string>& besides) {
+  std::vector<std::string> keys = {"kind", "radius", "corner_radius", "length", "shank", "holder", "head"};
+  keys.insert(keys.end(), besides.begin(), besides.end());
+  reader.only_keys(table, keys);
   model::Mill mill;
   mill.kind = reader.choice<model::MillKind>(
       table, "kind", {{"flat", model::MillKind::flat}, {"bull", model::MillKind::bull}}, mill.kind);
@@ -190,6 +198,8 @@ model::Mill read_tool(TomlReader& reader, const toml::table& table) {
 }
 
 // --- [operation]
+
+namespace {
 
 const std::vector<std::string> kOperationKeys = {
     "paths",     "plane_normal", "tilt",       "yaw",      "tolerance", "clearance",
@@ -218,7 +228,7 @@ void read_paths(TomlReader& reader, const toml::table& table, bool contacts, ori
   }
   if (has(table, "side_step")) o.side_step_mm = reader.number(table, "side_step", kSmallest, kMaxLength);
   if (has(table, "path_count"))
-    o.path_count = whole(reader, table, "path_count", 1, kMostPaths, std::nullopt);
+    o.path_count = whole(reader, table, "path_count", 1, orient::kMostPaths, std::nullopt);
   if (o.side_step_mm && o.path_count)
     reader.fail(*table.get("path_count"), "\"path_count\" beside \"side_step\" (one or the other)");
   if (has(table, "max_step")) paths.max_step_mm = reader.number(table, "max_step", kSmallest, kMaxLength);
@@ -261,6 +271,8 @@ orient::OrientOptions read_operation(TomlReader& reader, const toml::table& tabl
 
 // --- [machine]
 
+}  // namespace
+
 std::string read_machine(TomlReader& reader, const toml::table& table) {
   reader.only_keys(table, {"name"});
   std::string name = reader.text(table, "name");
@@ -277,16 +289,14 @@ std::string read_machine(TomlReader& reader, const toml::table& table) {
   return name;
 }
 
-}  // namespace
-
 Result<OrientJobFile> read_orient_job(std::string_view text, const std::string& file_name) {
   TomlReader reader(file_name);
   const toml::table root = reader.parse(text);
   if (reader.error()) return *reader.error();
-  reader.only_keys(root, {"part", "tool", "operation", "machine"});
+  reader.only_keys(root, {"part", "tool", "operation", "machine", "stock"});  // [stock]: `burin verify`
   OrientJobFile job;
-  read_part(reader, reader.subtable(root, "part"), job);
-  job.mill = read_tool(reader, reader.subtable(root, "tool"));
+  read_orient_part(reader, reader.subtable(root, "part"), true, job);
+  job.mill = read_mill(reader, reader.subtable(root, "tool"));
   const toml::table no_table;
   const toml::table& operation = has(root, "operation") ? reader.subtable(root, "operation") : no_table;
   job.options = read_operation(reader, operation, !job.contacts.empty());

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "burin/base/text.h"
-#include "burin/geom/surface/tessellate.h"
 #include "burin/io/step/read_step.h"
 #include "burin/io/stl/stl.h"
+#include "burin/job/face_mesh.h"
 #include "burin/job/orient_job.h"
 
 namespace burin::job {
@@ -19,67 +19,17 @@ namespace {
 
 using geom::Mesh;
 
-/// Shares of the gouge tolerance that triangles may leave their faces by.
-constexpr double kDesignShare = 1.0 / 40, kObstacleShare = 1.0 / 4;
-/// The tool is tested against all triangles: more of them make the plan slow before they make it better.
-constexpr std::size_t kMostDesign = 1'000'000, kMostObstacles = 500'000;
+/// Share of the gouge tolerance that triangles of obstacles may leave their faces by.
+constexpr double kObstacleShare = 1.0 / 4;
+/// The tool is tested against all triangles.
+constexpr std::size_t kMostObstacles = 500'000;
 /// Faces of free form are approximated within this at most when they are no NURBS (mm).
 constexpr double kApproximation = 1e-4;
-/// Steps of the deflection when there would be too many triangles: the number falls with its inverse, or
-/// more slowly.
-constexpr double kMargin = 1.05, kTowards = 0.8;
-constexpr double kCoarsest = 1e6;  ///< mm: fewer triangles do not come from more
 constexpr std::size_t kMostFileTriangles = 20'000'000;
-
-void append(Mesh& to, const Mesh& mesh) {
-  const auto base = static_cast<std::uint32_t>(to.vertices.size());
-  to.vertices.insert(to.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
-  for (const auto& t : mesh.triangles) to.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
-}
 
 Error in_file(Error error, const std::string& file) {
   if (error.where.file.empty()) error.where.file = file;
   return error;
-}
-
-std::string face_text(int number) {
-  return "face " + std::to_string(number);
-}
-
-Error of_face(Error error, const orient::DesignFace& face) {
-  error.where.entity = face_text(face.number);
-  return error;
-}
-
-/// Triangles of all faces behind those in `mesh`, with the finest deflection from `wanted` on at which they
-/// stay within `most`; returns it.
-Result<double> add_faces(const std::vector<orient::DesignFace>& faces, double wanted, std::size_t most,
-                         Mesh& mesh) {
-  std::vector<geom::Tessellator> tessellators;
-  for (const orient::DesignFace& face : faces) {
-    auto tessellator = geom::Tessellator::make(face.surface, face.trims);
-    if (!tessellator) return of_face(tessellator.error(), face);
-    tessellators.push_back(*std::move(tessellator));
-  }
-  double deflection = wanted, reached = 0;
-  for (;;) {
-    double total = 0;
-    for (const auto& tessellator : tessellators) total += tessellator.triangles(deflection);
-    if (!(total > double(most))) break;
-    const double next = deflection * std::max(kMargin, kTowards * total / double(most));
-    if (!std::isfinite(next) || !(next < kCoarsest))
-      return Error{ErrorCode::range,
-                   "too many faces or pieces of them for " + std::to_string(most) + " triangles",
-                   {}};
-    deflection = next;
-  }
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    auto part = tessellators[i].build(faces[i].reversed, {deflection, 0, most});
-    if (!part) return of_face(part.error(), faces[i]);
-    append(mesh, part->mesh);
-    reached = std::max(reached, part->deflection_mm);
-  }
-  return reached;
 }
 
 class Loader {
@@ -156,7 +106,7 @@ class Loader {
       (design ? part_.faces : others).push_back(std::move(face));
     }
     part_.name = std::filesystem::path(surface.file).filename().string();
-    const auto reached = add_faces(part_.faces, design_share(), kMostDesign, part_.mesh);
+    const auto reached = add_faces(part_.faces, design_share(), kMostDesignTriangles, part_.mesh);
     if (!reached) return in_file(reached.error(), surface.file);
     part_.deflection_mm = *reached;
     tell(*reached, design_share(), "the design", surface.file);
@@ -196,7 +146,7 @@ class Loader {
     if (!propeller) return propeller.error();
     part_.name = "propeller";
     part_.faces.push_back({propeller->side, propeller->reversed, {}, 1});
-    const auto reached = add_faces(part_.faces, design_share(), kMostDesign, part_.mesh);
+    const auto reached = add_faces(part_.faces, design_share(), kMostDesignTriangles, part_.mesh);
     if (!reached) return reached.error();
     part_.deflection_mm = *reached;
     tell(*reached, design_share(), "the design", "");

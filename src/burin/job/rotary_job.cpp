@@ -7,6 +7,7 @@
 #include "burin/base/text.h"
 #include "burin/io/stl/stl.h"
 #include "burin/job/cad_part.h"
+#include "burin/job/job_tables.h"
 #include "burin/job/section_file.h"
 #include "burin/model/toml_reader.h"
 
@@ -83,7 +84,9 @@ LoftPart read_loft(TomlReader& reader, const toml::table& table) {
   return part;
 }
 
-RotaryPartSource read_part(TomlReader& reader, const toml::table& table) {
+}  // namespace
+
+RotaryPartSource read_rotary_part(TomlReader& reader, const toml::table& table) {
   const std::vector<std::string> kinds = {"section", "sections", "surface", "mesh"};
   std::string kind;
   for (const std::string& key : kinds) {
@@ -112,6 +115,8 @@ RotaryPartSource read_part(TomlReader& reader, const toml::table& table) {
 
 // --- [tool]
 
+namespace {
+
 std::vector<model::HolderPiece> read_holder(TomlReader& reader, const toml::table& table) {
   std::vector<model::HolderPiece> holder;
   for (const toml::table* piece : reader.tables(table, "holder")) {
@@ -122,8 +127,13 @@ std::vector<model::HolderPiece> read_holder(TomlReader& reader, const toml::tabl
   return holder;
 }
 
-model::BallTool read_tool(TomlReader& reader, const toml::table& table) {
-  reader.only_keys(table, {"kind", "radius", "shank_radius", "shank_length", "holder"});
+}  // namespace
+
+model::BallTool read_ball_tool(TomlReader& reader, const toml::table& table,
+                               const std::vector<std::string>& besides) {
+  std::vector<std::string> keys = {"kind", "radius", "shank_radius", "shank_length", "holder"};
+  keys.insert(keys.end(), besides.begin(), besides.end());
+  reader.only_keys(table, keys);
   reader.choice<int>(table, "kind", {{"ball", 0}}, 0);
   model::BallTool tool;
   tool.radius = reader.number(table, "radius", kSmallest, kMaxLength);
@@ -137,6 +147,8 @@ model::BallTool read_tool(TomlReader& reader, const toml::table& table) {
 }
 
 // --- [operation]
+
+namespace {
 
 rotary::RotaryOptions read_operation(TomlReader& reader, const toml::table& table) {
   reader.only_keys(table, {"pattern", "tolerance", "scallop", "side_step", "tsi", "tai", "clearance_angle",
@@ -181,8 +193,8 @@ Result<RotaryJobFile> read_rotary_job(std::string_view text, const std::string& 
   if (reader.error()) return *reader.error();
   reader.only_keys(root, {"part", "tool", "operation", "machine", "stock", "output"});
   RotaryJobFile job;
-  job.part = read_part(reader, reader.subtable(root, "part"));
-  job.tool = read_tool(reader, reader.subtable(root, "tool"));
+  job.part = read_rotary_part(reader, reader.subtable(root, "part"));
+  job.tool = read_ball_tool(reader, reader.subtable(root, "tool"));
   if (root.contains("operation")) {
     const toml::table& operation = reader.subtable(root, "operation");
     job.options = read_operation(reader, operation);
@@ -195,8 +207,10 @@ Result<RotaryJobFile> read_rotary_job(std::string_view text, const std::string& 
   }
   if (root.contains("stock")) {
     const toml::table& stock = reader.subtable(root, "stock");
-    reader.only_keys(stock, {"radius"});
-    job.options.stock_radius = reader.number(stock, "radius", kSmallest, kMaxLength);
+    // The other keys are those of `burin verify`.
+    reader.only_keys(stock, {"radius", "kind", "length", "axis", "base", "margin", "lo", "hi", "file"});
+    if (stock.contains("radius"))
+      job.options.stock_radius = reader.number(stock, "radius", kSmallest, kMaxLength);
   }
   if (reader.error()) return *reader.error();
   return job;
@@ -279,6 +293,8 @@ namespace {
 /// Faces whose normal leaves the X axis by less are end faces: a ball beside the part cannot finish them.
 constexpr double kEndFaceCosine = 0.999;
 
+}  // namespace
+
 std::vector<bool> machined_triangles(const rotary::Part& part) {
   std::vector<bool> machined;
   machined.reserve(part.mesh.triangles.size());
@@ -291,6 +307,8 @@ std::vector<bool> machined_triangles(const rotary::Part& part) {
   }
   return machined;
 }
+
+namespace {
 
 /// Points of the swept section itself, which the mesh only follows within its deflection.
 void add_swept(const rotary::SweptSection& swept, double spacing_mm, std::size_t max_samples,

@@ -58,6 +58,10 @@ Result<RotaryJobFile> read_rotary_job(std::string_view toml, const std::string& 
 Result<rotary::Part> load_rotary_part(const RotaryJobFile& job, const std::string& folder,
                                       const FileSource& read, Diagnostics& diagnostics);
 
+/// Of part.mesh: what a ball beside the part is to finish. Not so end faces and what lies outside of x_min to
+/// x_max: it must not be cut, but need not be reached.
+std::vector<bool> machined_triangles(const rotary::Part& part);
+
 struct RotaryJob {
   rotary::Part part;
   rotary::RotaryPlan plan;

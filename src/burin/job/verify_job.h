@@ -12,6 +12,7 @@
 #include "burin/base/result.h"
 #include "burin/cl/program.h"
 #include "burin/job/file_source.h"
+#include "burin/job/verify_laser.h"
 #include "burin/kinematics/kinematics.h"
 #include "burin/removal/removal.h"
 #include "burin/verify/beam_check.h"
@@ -28,6 +29,7 @@ struct VerifyOptions {
   std::optional<std::string> machine;  ///< else the job's; NC with rotary words needs one
   std::optional<double> tool_diameter, tool_corner, tool_length;  ///< else the job's, else CUTTER/
   std::optional<double> kerf_mm;                                  ///< laser
+  LaserOutlineOptions laser;
   std::optional<std::string> stock;  ///< "block", "cylinder", STL; else [stock] of the job; else none
   std::optional<std::size_t> samples;
   std::optional<double> spacing_mm;
@@ -35,6 +37,8 @@ struct VerifyOptions {
   std::optional<double> tolerance_mm;  ///< else the job's, else 0.01
   bool tcp = false;                    ///< poses of CL data run by tool-centre-point control (default)
   bool joints = false;                 ///< CL data posted to joint-linear moves of the machine
+  double resolution_mm = 0;            ///< of the stock; 0: from its size
+  bool keep_times = false;             ///< of the stock, for the viewer's clock
   unsigned threads = 0;
 };
 
@@ -46,11 +50,13 @@ struct VerifyInput {
   bool program_is_nc = false;
   std::optional<kinematics::Kinematics> machine;
   std::vector<kinematics::Joints> joints;  ///< by motion; empty: poses
+  std::vector<bool> tip_straight;          ///< the same, under G43.4
   geom::Mesh design, obstacles;
-  std::vector<bool> machined;             ///< a triangle; empty: all
-  std::vector<geom::Vec3> normals;        ///< a vertex of design; empty: of triangles
-  double deflection_mm = 0;               ///< of the design's triangles
-  std::vector<verify::Outline> outlines;  ///< laser
+  std::vector<bool> machined;              ///< a triangle; empty: all
+  std::vector<geom::Vec3> normals;         ///< a vertex of design; empty: of triangles
+  double deflection_mm = 0;                ///< of the design's triangles
+  std::vector<verify::Outline> outlines;   ///< laser
+  std::vector<std::string> outline_names;  ///< what the drawing calls them
   double kerf_mm = 0;
   std::optional<removal::Stock> stock;
   double tolerance_mm = 0.01;

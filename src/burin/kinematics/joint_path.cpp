@@ -231,8 +231,6 @@ class Maker {
   }
 
   double minutes(const Joints& start, const Joints& end, double length) {
-    for (std::size_t i = 0; i < 2; ++i)
-      out_.turn_max = std::max(out_.turn_max, std::abs(end.rotary[i] - start.rotary[i]));
     const double least = least_minutes(machine_, start, end);
     const double wanted = feed_ > 0 ? length / feed_ : 0;
     if (least > wanted * (1 + 1e-9)) ++out_.feed_limited;

@@ -45,7 +45,6 @@ struct JointPath {
   std::size_t acceleration_limited = 0;  ///< feed moves made slower for the acceleration of a rotary axis
   std::size_t pole_turns = 0;            ///< turns of the first rotary axis in place, at a pole
   double deviation_mm = 0;               ///< of the tip, largest measured
-  double turn_max = 0;                   ///< largest change of a rotary axis in one feed move
 };
 
 /// Errors: a tool axis the machine cannot reach (unsupported), a position beyond its limits (range; names CL

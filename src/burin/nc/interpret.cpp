@@ -8,11 +8,15 @@ namespace burin::nc {
 namespace {
 
 Result<cl::Program> read(std::string_view text, const InterpretOptions& options, Diagnostics& diagnostics,
-                         std::vector<kinematics::Joints>* joints) {
+                         JointProgram* moves) {
   cl::Program program;
   const ModalMachine* reader = nullptr;
   ModalMachine machine(options, diagnostics, [&](cl::Record record, int line) {
-    if (joints && cl::is_motion(record)) joints->push_back(reader->joints());
+    if (moves && cl::is_motion(record)) {
+      moves->joints.push_back(reader->joints());
+      moves->tip_straight.push_back(reader->state().tool_centre);
+      moves->unknown.push_back(std::holds_alternative<cl::Rapid>(record) && !reader->placed());
+    }
     program.add(std::move(record), static_cast<std::uint32_t>(line));
   });
   reader = &machine;
@@ -38,7 +42,7 @@ Result<cl::Program> interpret(std::string_view text, const InterpretOptions& opt
 Result<JointProgram> interpret_joints(std::string_view text, const InterpretOptions& options,
                                       Diagnostics& diagnostics) {
   JointProgram result;
-  auto program = read(text, options, diagnostics, &result.joints);
+  auto program = read(text, options, diagnostics, &result);
   if (!program) return program.error();
   result.program = std::move(*program);
   return result;

@@ -46,6 +46,17 @@ TEST_F(Rotary, PosesAreInThePartFrame) {
   EXPECT_NEAR(feeds[1], 20 * geom::kPi / 4 * 30, 1e-3);
 }
 
+TEST_F(Rotary, SaysWhereThePlaceIsNotKnown) {
+  const auto moves = read("G21 G90 G0 A90\nX1 Y2\nZ5\nG1 Z1 F100\nG28 G91 Z0\nG90 G0 X7\nG0 Z9\n");
+  ASSERT_TRUE(moves.ok()) << moves.error().to_string();
+  EXPECT_EQ(moves->unknown, (std::vector<bool>{true, true, false, false, true, false}));
+  options_.machine = nullptr;
+  const auto tips = read("G21 G90 G0 X1 Y2\nG0 Z3\n");
+  ASSERT_TRUE(tips.ok()) << tips.error().to_string();
+  EXPECT_EQ(tips->unknown, (std::vector<bool>{true, false}));
+  EXPECT_EQ(tips->joints[1].linear, (std::array<double, 3>{1, 2, 3}));
+}
+
 TEST_F(Rotary, RefusesWithLineAndColumn) {
   const struct {
     const char* text;

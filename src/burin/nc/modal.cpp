@@ -380,8 +380,15 @@ Result<geom::Point3> ModalMachine::target(const std::array<const Word*, 3>& axes
       return error(ErrorCode::range, "a position beyond " + coordinate_limit() + " (less)", word);
     set_component(end, axis, to);
     lost_[axis] = false;
+    sent_[axis] = true;
   }
   return end;
+}
+
+bool ModalMachine::placed() const {
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (lost_[axis] || !sent_[axis]) return false;
+  return true;
 }
 
 Result<geom::Point3> ModalMachine::take_target() {

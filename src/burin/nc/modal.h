@@ -59,6 +59,8 @@ class ModalMachine {
   /// The comment beside the program number that stands before everything else.
   const std::string& name() const { return name_; }
   bool moved() const { return moved_; }
+  /// Every axis stands where the program has sent it.
+  bool placed() const;
   bool began_with_feed() const { return began_with_feed_; }
 
  private:
@@ -111,6 +113,7 @@ class ModalMachine {
   std::array<double, 2> rotary_before_{};  // this block
   bool turned_ = false;                    // this block names a rotary axis
   std::array<bool, 3> lost_{};             // axes at a place of the machine
+  std::array<bool, 3> sent_{};             // axes that were sent somewhere
   bool units_known_ = false, moved_ = false, ended_ = false, has_name_ = false, any_record_ = false;
   bool began_with_feed_ = false;
 };

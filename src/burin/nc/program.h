@@ -118,8 +118,12 @@ Result<cl::Program> interpret(std::string_view text, const InterpretOptions& opt
 struct JointProgram {
   cl::Program program;
   std::vector<kinematics::Joints> joints;
+  std::vector<bool> tip_straight;  ///< of each motion: under G43.4
+  /// Rapids while an axis stands where only the machine knows: it has not been sent anywhere yet, or was sent
+  /// to a place of the machine (G28, G30, G53). Where they end is made up.
+  std::vector<bool> unknown;
 };
-/// Precondition: options.machine.
+/// Without a machine the joints are the tip.
 Result<JointProgram> interpret_joints(std::string_view text, const InterpretOptions& options,
                                       Diagnostics& diagnostics);
 

@@ -11,6 +11,7 @@
 #include "burin/base/parallel.h"
 #include "burin/geom/point_tools.h"
 #include "burin/verify/deviation_search.h"
+#include "burin/verify/mill_walk.h"
 #include "burin/verify/sample_tile.h"
 
 namespace burin::verify {
@@ -95,27 +96,20 @@ Result<void> validate(const CheckedPath& path, const DeviationOptions& options) 
     return range("reach and resolution must be positive");
   if (!(std::isfinite(options.tolerance_mm) && options.tolerance_mm >= 0))
     return range("the tolerance must not be negative");
-  if (!(std::isfinite(path.motion_mm) && path.motion_mm >= 0))
-    return range("what the motion is straightened by must not be negative");
-  const geom::Mesh nothing;
-  for (const ToolPath& tool : path.tools) {
-    PoseMotion poses{tool.from};
-    poses.reserve(tool.pieces.size() + 1);
-    for (const PathPiece& piece : tool.pieces) {
-      if (piece.move >= path.moves.size()) return range("a piece of the path belongs to no move");
-      poses.push_back(piece.to);
-    }
-    if (poses.size() >= Moment::kNone) return range("too many pieces of motion (4,000,000,000 at most)");
-    if (auto ok = check_mill(nothing, tool.tool, poses); !ok) return ok.error();
-  }
-  return {};
+  if (path.piece_count() >= Moment::kNone) return range("too many pieces of motion (4,000,000,000 at most)");
+  return verify::validate(path);
 }
 
 class Measure {
  public:
   Measure(const geom::Mesh& mesh, const SampledSurface& surface, const CheckedPath& path,
           const DeviationOptions& options, ProgressSink* progress)
-      : mesh_(mesh), surface_(surface), path_(path), options_(options), progress_(progress) {}
+      : mesh_(mesh),
+        surface_(surface),
+        path_(path),
+        options_(options),
+        progress_(progress),
+        inscribed_(mesh) {}
 
   Result<DeviationReport> run() {
     swept_ = swept_tools(path_);
@@ -166,7 +160,8 @@ class Measure {
     Tile tile(swept_, options_);
     const std::vector<SampleLine>& lines = tile.measure(surface_.samples, index(t), count(t));
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      const SampleLine& line = lines[i];
+      SampleLine line = lines[i];
+      line.best = -inscribed_.own(line.q, line.n, -line.best, options_.resolution_mm);
       const std::uint32_t at = index(t)[i];
       moments_[at] = line.at;
       report_.deviation_mm[at] =
@@ -204,7 +199,7 @@ class Measure {
     const TileWorst known = worst;
     const SearchLimits limits{kGap * options_.resolution_mm, path_.motion_mm, steps};
     const bool ok = each(stage, tiles, [&](std::size_t t) {
-      TileSearch search(mesh_, surface_, swept_, options_);
+      TileSearch search(mesh_, surface_, swept_, inscribed_, options_);
       TileWorst& mine = tiles_[t];
       if (which == &TileWorst::gouge) {
         const TileWorst found = search.gouge(index(t), count(t), known, limits);
@@ -243,6 +238,7 @@ class Measure {
   const CheckedPath& path_;
   const DeviationOptions& options_;
   ProgressSink* progress_;
+  Inscribed inscribed_;
   Swept swept_;
   std::vector<std::uint32_t> order_;
   std::vector<Moment> moments_;  // of the samples

@@ -103,6 +103,7 @@ void TileSearch::gouge(const Sunk& sunk, const Candidate& c, const Span& span, i
   if (below.value <= -sunk.margin) return;
   const Upper above = upper_bound(body, *c.stretch, span, sunk.above, -limits_.motion);
   if (above.value <= -limits_.motion) return;
+  if (inscribed_.none_counts(sunk.below.center, sunk.below.radius, depth())) return;
   if (steps_ == 0 || halvings >= kMostHalvings) {
     give_up(sunk.patch, c, span);
     return;
@@ -130,8 +131,9 @@ void TileSearch::take(Point3 p, Vec3 n, const Candidate& c) {
   SampleLine line = swept_.line(p, n, options_);
   swept_.tools[c.tool].lower(line, c);
   swept_.lower(line);
-  if (line.found() && -line.best > worst_.gouge.mm)
-    worst_.gouge = {-line.best, line.q, line.n, swept_.move_of(line.at)};
+  if (!line.found()) return;
+  const double deep = inscribed_.own(line.q, line.n, -line.best, options_.resolution_mm);
+  if (deep > worst_.gouge.mm) worst_.gouge = {deep, line.q, line.n, swept_.move_of(line.at)};
 }
 
 void TileSearch::give_up(const Patch& patch, const Candidate& c, const Span& span) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "burin/verify/inscribed.h"
 #include "burin/verify/sample_tile.h"
 #include "burin/verify/surface_cell.h"
 
@@ -27,8 +28,8 @@ struct TileWorst {
 class TileSearch {
  public:
   TileSearch(const geom::Mesh& mesh, const SampledSurface& surface, const Swept& swept,
-             const DeviationOptions& options)
-      : mesh_(mesh), surface_(surface), swept_(swept), options_(options) {}
+             const Inscribed& inscribed, const DeviationOptions& options)
+      : mesh_(mesh), surface_(surface), swept_(swept), inscribed_(inscribed), options_(options) {}
 
   /// `known`: the worst found so far anywhere. `moments`: of all samples, when their lines are entered.
   TileWorst gouge(const std::uint32_t* index, std::size_t count, const TileWorst& known,
@@ -64,6 +65,7 @@ class TileSearch {
   const geom::Mesh& mesh_;
   const SampledSurface& surface_;
   const Swept& swept_;
+  const Inscribed& inscribed_;
   const DeviationOptions& options_;
   SearchLimits limits_;
   TileWorst worst_;

@@ -28,6 +28,8 @@ struct MillBody {
 
   /// No place of it is farther from the tip.
   double span() const { return std::hypot(radius, std::max(std::abs(low), std::abs(high))); }
+  /// No place is deeper in it.
+  double inside() const { return std::min(radius, 0.5 * (high - low)); }
   /// How far the piece reaches along the unit vector `m`, seen from the tip. No place is deeper in the piece
   /// than below the plane there: f(q) <= reach(m) - m . (q - tip) wherever f > 0.
   double reach(geom::Vec3 axis, geom::Vec3 m) const {

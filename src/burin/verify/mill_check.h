@@ -6,14 +6,13 @@
 // function of the place, so that boxes and triangles over pieces of the motion are bounded from above by one
 // evaluation, and a search from the whole to the detail ends with proof: the deepest gouge of all places of
 // all triangles at all moments is at most
-//   finding + bound_mm,   bound = resolution (+ motion for joint moves).
+//   finding + bound_mm,   bound = resolution + motion_mm of the path.
 // Nothing is sampled. How far the triangles are from the true surface (their deflection) comes on top; the
 // caller knows it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <variant>
 #include <vector>
 
 #include "burin/base/result.h"
@@ -30,26 +29,15 @@ struct CheckedMill {
   std::vector<ToolCylinder> cylinders;  ///< shank and holder; heights from the tip, too
 };
 
-/// From each pose to the next the tip goes straight and the axis turns evenly along the great circle: what
-/// tool-centre-point control does.
-using PoseMotion = std::vector<cl::Pose>;
-/// From each to the next all axes run evenly.
-struct JointMotion {
-  const kinematics::Kinematics* machine = nullptr;
-  std::vector<kinematics::Joints> joints;
-};
-using MillMotion = std::variant<PoseMotion, JointMotion>;
-
 struct MillCheckOptions {
   double resolution_mm = 0.001;
-  double motion_mm = 0.0005;  ///< of joint moves: by so much they are straightened
-  unsigned threads = 1;       ///< 0: as many as there are; the result is the same for any number
+  unsigned threads = 1;  ///< 0: as many as there are; the result is the same for any number
 };
 
 struct MillFinding {
   double mm = 0;  ///< depth, 0 when there is none
   geom::Point3 at;
-  std::size_t move = 0;  ///< the move to pose or joints `move`
+  std::size_t move = 0;  ///< GOTO number
   std::uint32_t triangle = 0;
 };
 struct MillCheckReport {
@@ -59,10 +47,11 @@ struct MillCheckReport {
   double gouge_max_mm() const;
 };
 
-/// Errors: numbers of tool or options that are not finite and positive, a corner beyond radius or length
+struct CheckedPath;
+/// Errors: numbers of tools or options that are not finite and positive, a corner beyond radius or length
 /// (range); a motion or a triangle that is not finite, an axis that is not a unit vector, a half turn of the
 /// axis, which has no great circle (geometry; names the move); vertices that do not exist.
-Result<MillCheckReport> check_mill(const geom::Mesh& mesh, const CheckedMill& tool, const MillMotion& motion,
+Result<MillCheckReport> check_mill(const geom::Mesh& mesh, const CheckedPath& path,
                                    const MillCheckOptions& options = {});
 
 }  // namespace burin::verify

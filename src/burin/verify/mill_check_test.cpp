@@ -8,6 +8,8 @@
 #include <random>
 #include <string>
 
+#include "burin/verify/mill_cases.h"
+
 namespace burin::verify {
 namespace {
 
@@ -22,20 +24,9 @@ Mesh plate(double size) {
   return m;
 }
 
-/// f(u, v) on a grid over [0, 1]^2.
-template <class F>
-Mesh grid(int nu, int nv, F&& f) {
-  Mesh m;
-  for (int j = 0; j <= nv; ++j)
-    for (int i = 0; i <= nu; ++i) m.vertices.push_back(f(double(i) / nu, double(j) / nv));
-  for (int j = 0; j < nv; ++j)
-    for (int i = 0; i < nu; ++i) {
-      const auto a = static_cast<std::uint32_t>(j * (nu + 1) + i), b = a + static_cast<std::uint32_t>(nu) + 1;
-      m.triangles.push_back({a, a + 1, b + 1});
-      m.triangles.push_back({a, b + 1, b});
-    }
-  return m;
-}
+using cases::grid;
+using cases::path_of;
+using Poses = std::vector<cl::Pose>;
 
 /// Leaning by `tilt` from +z towards +x: the lowest place of the bottom is on the side of -x... of the rim at
 /// +x for a lean back.
@@ -48,14 +39,18 @@ Point3 tip_at(const CheckedMill& tool, double tilt, double x, double y, double z
   return {x, y, z + r + flat * std::sin(tilt) - r * std::cos(tilt)};
 }
 
-MillCheckReport checked(const Mesh& mesh, const CheckedMill& tool, const MillMotion& motion,
-                        MillCheckOptions options = {}) {
-  const auto report = check_mill(mesh, tool, motion, options);
+MillCheckReport checked(const Mesh& mesh, const CheckedPath& path, const MillCheckOptions& options = {}) {
+  const auto report = check_mill(mesh, path, options);
   if (!report) {
     ADD_FAILURE() << report.error().message;
     return {};
   }
   return *report;
+}
+
+MillCheckReport checked(const Mesh& mesh, const CheckedMill& tool, const Poses& poses,
+                        const MillCheckOptions& options = {}) {
+  return checked(mesh, path_of(tool, poses), options);
 }
 
 TEST(MillCheck, TiltedEndsOverAPlane) {
@@ -69,7 +64,7 @@ TEST(MillCheck, TiltedEndsOverAPlane) {
         // A sharp rim: deepest where bottom and side are equally near.
         double want = depth;
         if (corner == 0) want /= std::sin(tilt) + std::cos(tilt);
-        for (const PoseMotion& motion : {PoseMotion{at(0), at(0)}, PoseMotion{at(-40), at(90)}}) {
+        for (const Poses& motion : {Poses{at(0), at(0)}, Poses{at(-40), at(90)}}) {
           const MillCheckReport report = checked(mesh, tool, motion);
           EXPECT_NEAR(report.cutter.mm, std::max(0.0, want), report.bound_mm + 1e-9);
           EXPECT_LE(report.cutter.mm, std::max(0.0, want) + 1e-9);
@@ -84,14 +79,14 @@ TEST(MillCheck, AxisTurnsEvenlyAlongTheGreatCircle) {
   // The tip stands still above the plane; in the middle of the turn the rim is highest, at the ends lowest.
   const double height = 50 * std::sin(a) - 0.04;
   const auto report =
-      checked(plate(200), tool, PoseMotion{{{0, 0, height}, leaning(a)}, {{0, 0, height}, leaning(-a)}});
+      checked(plate(200), tool, Poses{{{0, 0, height}, leaning(a)}, {{0, 0, height}, leaning(-a)}});
   EXPECT_NEAR(report.cutter.mm, 0.04 / (std::sin(a) + std::cos(a)), report.bound_mm);
   EXPECT_NEAR(std::abs(report.cutter.at.x), 50 * std::cos(a), 1);
   // Over the pole from one lean to another one square to it, both just clear: the chord of the circle is
   // tilted less, and clear.
   const Vec3 side{0, std::sin(a), std::cos(a)};
-  const auto clear = checked(
-      plate(200), tool, PoseMotion{{{0, 0, 50 * std::sin(a)}, leaning(a)}, {{0, 0, 50 * std::sin(a)}, side}});
+  const auto clear = checked(plate(200), tool,
+                             Poses{{{0, 0, 50 * std::sin(a)}, leaning(a)}, {{0, 0, 50 * std::sin(a)}, side}});
   EXPECT_LE(clear.cutter.mm, 1e-9);
 }
 
@@ -107,7 +102,7 @@ TEST(MillCheck, BallOnSphereAndCylinder) {
     // Any lean of a ball does the same: centre over the top.
     const Vec3 axis = unit(Vec3{0.3, -0.2, 1});
     const Point3 tip = Point3{0, 0, big + 8 - depth} - 8 * axis;
-    const auto report = checked(ball, tool, PoseMotion{{{0, 0, 200}, axis}, {tip, axis}});
+    const auto report = checked(ball, tool, Poses{{{0, 0, 200}, axis}, {tip, axis}});
     EXPECT_LE(report.cutter.mm, depth + 1e-9);
     EXPECT_GE(report.cutter.mm, depth - report.bound_mm - deflection);
     EXPECT_LT(std::hypot(report.cutter.at.x, report.cutter.at.y), 0.5);
@@ -121,10 +116,10 @@ TEST(MillCheck, BallOnSphereAndCylinder) {
   });
   const double rise = inside - std::sqrt(inside * inside - r * r);
   const auto clear =
-      checked(trough, {r, 0, 60, {}}, PoseMotion{{{-30, 0, rise}, {0, 0, 1}}, {{30, 0, rise}, {0, 0, 1}}});
+      checked(trough, {r, 0, 60, {}}, Poses{{{-30, 0, rise}, {0, 0, 1}}, {{30, 0, rise}, {0, 0, 1}}});
   EXPECT_LE(clear.cutter.mm, inside * 0.4 * 0.4 / (8 * 1500 * 1500.0) + 1e-9);
   const auto cut = checked(trough, {r, 0, 60, {}},
-                           PoseMotion{{{-30, 0, rise - 0.05}, {0, 0, 1}}, {{30, 0, rise - 0.05}, {0, 0, 1}}});
+                           Poses{{{-30, 0, rise - 0.05}, {0, 0, 1}}, {{30, 0, rise - 0.05}, {0, 0, 1}}});
   // As deep as where the distances to bottom and side agree on a line of that slope.
   const double slope = std::asin(r / inside);
   EXPECT_NEAR(cut.cutter.mm, 0.05 * std::cos(slope) / (std::sin(slope) + std::cos(slope)),
@@ -135,11 +130,11 @@ TEST(MillCheck, FindsPlantedFaults) {
   const Mesh mesh = plate(400);
   const double tilt = geom::radians(5.0);
   CheckedMill tool{60, 4, 50, {}};
-  PoseMotion motion;
+  Poses motion;
   for (int i = 0; i <= 100; ++i) motion.push_back({tip_at(tool, tilt, -200 + 4 * i, 0, 0), leaning(tilt)});
   EXPECT_LE(checked(mesh, tool, motion).cutter.mm, 1e-9);
   // One point 0.05 too deep.
-  PoseMotion deep = motion;
+  Poses deep = motion;
   deep[37].tip.z -= 0.05;
   auto report = checked(mesh, tool, deep);
   EXPECT_NEAR(report.cutter.mm, 0.05, report.bound_mm);
@@ -150,7 +145,7 @@ TEST(MillCheck, FindsPlantedFaults) {
   report = checked(mesh, larger, motion);
   EXPECT_NEAR(report.cutter.mm, std::sin(tilt), report.bound_mm);
   // One axis leaning a degree more.
-  PoseMotion wrong = motion;
+  Poses wrong = motion;
   wrong[70].axis = leaning(tilt + geom::radians(1.0));
   report = checked(mesh, tool, wrong);
   const Point3 needed = tip_at(tool, tilt + geom::radians(1.0), 0, 0, 0);
@@ -162,7 +157,7 @@ TEST(MillCheck, ShankAndHolder) {
   // A wall x = 0 to the left of an upright tool.
   const Mesh wall = grid(1, 1, [](double u, double v) { return Point3{0, -100 + 200 * u, 300 * v}; });
   CheckedMill tool{10, 0, 40, {{12, 40, 90, false}, {30, 90, 150, true}}};
-  const auto at = [](double x) { return PoseMotion{{{x, 0, 500}, {0, 0, 1}}, {{x, 0, 10}, {0, 0, 1}}}; };
+  const auto at = [](double x) { return Poses{{{x, 0, 500}, {0, 0, 1}}, {{x, 0, 10}, {0, 0, 1}}}; };
   auto report = checked(wall, tool, at(30));
   EXPECT_EQ(report.gouge_max_mm(), 0);
   report = checked(wall, tool, at(29.5));
@@ -215,7 +210,7 @@ TEST(MillCheck, AgreesWithBruteForce) {
     const auto pose = [&] {
       return cl::Pose{{in(-15, 15), in(-15, 15), in(-15, 15)}, unit(Vec3{in(-1, 1), in(-1, 1), in(-1, 1)})};
     };
-    const PoseMotion motion{pose(), pose()};
+    const Poses motion{pose(), pose()};
     const MillCheckReport report = checked(m, tool, motion);
     double brute = 0;
     const double angle = std::acos(std::clamp(dot(motion[0].axis, motion[1].axis), -1.0, 1.0));
@@ -251,8 +246,9 @@ TEST(MillCheck, JointMovesAreFollowed) {
     return Point3{-40 + 80 * u, -40 + 80 * v, 5 * std::sin(4 * u) * std::cos(3 * v)};
   });
   CheckedMill tool{20, 3, 40, {{35, 40, 90, true}}};
-  JointMotion joints{&machine, {}};
-  PoseMotion poses;
+  cl::Program program;
+  std::vector<kinematics::Joints> joints;
+  Poses poses;
   std::mt19937 engine(8);
   const auto in = [&](double lo, double hi) {
     return lo + (hi - lo) * static_cast<double>(engine()) / 4294967296.0;
@@ -278,10 +274,14 @@ TEST(MillCheck, JointMovesAreFollowed) {
       poses.push_back(machine.forward(*j));
     }
     near = *j;
-    joints.joints.push_back(*j);
+    joints.push_back(*j);
+    program.add(cl::Feed{pose});
   }
-  const MillCheckReport by_joints = checked(mesh, tool, joints), by_poses = checked(mesh, tool, poses);
-  EXPECT_EQ(by_joints.bound_mm, 0.0015);
+  const auto path =
+      make_checked_path(program, joints, {}, machine, [&](const cl::ToolChange&) { return tool; }, {});
+  ASSERT_TRUE(path) << path.error().message;
+  const MillCheckReport by_joints = checked(mesh, *path), by_poses = checked(mesh, tool, poses);
+  EXPECT_LE(by_joints.bound_mm, 0.0015);
   EXPECT_GT(by_poses.cutter.mm, 1);
   EXPECT_NEAR(by_joints.cutter.mm, by_poses.cutter.mm, by_joints.bound_mm + by_poses.bound_mm);
   EXPECT_NEAR(by_joints.holder.mm, by_poses.holder.mm, by_joints.bound_mm + by_poses.bound_mm);
@@ -292,7 +292,7 @@ TEST(MillCheck, SameForAnyNumberOfThreads) {
   const Mesh mesh = grid(60, 60, [](double u, double v) {
     return Point3{200 * u, 200 * v, 8 * std::sin(5 * u + 3 * v)};
   });
-  PoseMotion motion;
+  Poses motion;
   for (int i = 0; i <= 300; ++i)
     motion.push_back({{200.0 * i / 300, 100, 7 + std::sin(0.1 * i)}, leaning(0.1)});
   const CheckedMill tool{30, 2, 40, {{20, 40, 100, true}}};
@@ -307,24 +307,23 @@ TEST(MillCheck, SameForAnyNumberOfThreads) {
 TEST(MillCheck, BadInputIsAnError) {
   const Mesh mesh = plate(10);
   const CheckedMill tool{5, 1, 20, {}};
-  const PoseMotion still{{{0, 0, 5}, {0, 0, 1}}, {{0, 0, 5}, {0, 0, 1}}};
+  const Poses still{{{0, 0, 5}, {0, 0, 1}}, {{0, 0, 5}, {0, 0, 1}}};
   const double nan = std::nan("");
-  EXPECT_FALSE(check_mill(mesh, {0, 0, 20, {}}, still));
-  EXPECT_FALSE(check_mill(mesh, {5, 6, 20, {}}, still));
-  EXPECT_FALSE(check_mill(mesh, {5, 0, 0, {}}, still));
-  EXPECT_FALSE(check_mill(mesh, {5, 0, 20, {{5, 30, 20, true}}}, still));
-  EXPECT_FALSE(check_mill(mesh, tool, still, {.resolution_mm = 0}));
-  EXPECT_FALSE(check_mill(mesh, tool, PoseMotion{{{0, 0, nan}, {0, 0, 1}}}));
-  EXPECT_FALSE(check_mill(mesh, tool, PoseMotion{{{0, 0, 0}, {0, 0, 2}}}));
-  EXPECT_FALSE(check_mill(mesh, tool, JointMotion{}));
-  const auto half = check_mill(mesh, tool, PoseMotion{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {0, 0, -1}}});
+  EXPECT_FALSE(check_mill(mesh, path_of({0, 0, 20, {}}, still)));
+  EXPECT_FALSE(check_mill(mesh, path_of({5, 6, 20, {}}, still)));
+  EXPECT_FALSE(check_mill(mesh, path_of({5, 0, 0, {}}, still)));
+  EXPECT_FALSE(check_mill(mesh, path_of({5, 0, 20, {{5, 30, 20, true}}}, still)));
+  EXPECT_FALSE(check_mill(mesh, path_of(tool, still), {.resolution_mm = 0}));
+  EXPECT_FALSE(check_mill(mesh, path_of(tool, Poses{{{0, 0, nan}, {0, 0, 1}}})));
+  EXPECT_FALSE(check_mill(mesh, path_of(tool, Poses{{{0, 0, 0}, {0, 0, 2}}})));
+  const auto half = check_mill(mesh, path_of(tool, Poses{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {0, 0, -1}}}));
   ASSERT_FALSE(half);
   EXPECT_NE(half.error().message.find("move 1"), std::string::npos);
   Mesh broken = mesh;
   broken.triangles.push_back({0, 1, 9});
-  EXPECT_FALSE(check_mill(broken, tool, still));
-  EXPECT_TRUE(check_mill({}, tool, still));
-  EXPECT_TRUE(check_mill(mesh, tool, PoseMotion{}));
+  EXPECT_FALSE(check_mill(broken, path_of(tool, still)));
+  EXPECT_TRUE(check_mill({}, path_of(tool, still)));
+  EXPECT_TRUE(check_mill(mesh, path_of(tool, Poses{})));
 }
 
 }  // namespace

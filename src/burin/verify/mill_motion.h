@@ -41,39 +41,13 @@ struct Stretch {
   }
 };
 
-class StretchedMotion {
- public:
-  /// `span`: no place of the tool is farther from the tip. Keeps references.
-  StretchedMotion(const geom::Mesh& mesh, const MillMotion& motion, double span, double motion_mm);
-
-  Result<void> validate() const;
-  bool exact() const { return joints_ == nullptr; }
-  std::size_t count() const { return joints_ ? joints_->joints.size() : poses_->size(); }
-
-  /// Of the move that ends in pose or joints `m`, m >= 1.
-  template <class Each>
-  void for_each_stretch(std::size_t m, Each&& each) const {
-    if (poses_) {
-      each(Stretch::between((*poses_)[m - 1], (*poses_)[m]));
-      return;
-    }
-    const kinematics::Joints &from = joints_->joints[m - 1], &to = joints_->joints[m];
-    const int count = pieces(from, to);
-    cl::Pose a = joints_->machine->forward(from);
-    for (int k = 1; k <= count; ++k) {
-      const cl::Pose b = joints_->machine->forward(between(from, to, static_cast<double>(k) / count));
-      each(Stretch::between(a, b));
-      a = b;
-    }
-  }
-
- private:
-  static kinematics::Joints between(const kinematics::Joints& a, const kinematics::Joints& b, double t);
-  int pieces(const kinematics::Joints& from, const kinematics::Joints& to) const;
-
-  const PoseMotion* poses_ = nullptr;
-  const JointMotion* joints_ = nullptr;
-  double reach_ = 0, motion_mm_ = 0;
-};
+/// A unit vector, as far as files keep one.
+bool is_axis(geom::Vec3 v);
+/// No great circle between them that rounding does not choose.
+bool opposite(geom::Vec3 a, geom::Vec3 b);
+/// Finite, with a unit vector for an axis; a way between that a great circle decides. The errors (geometry)
+/// name the move.
+Result<void> validate_pose(const cl::Pose& pose, std::size_t move);
+Result<void> validate_turn(const cl::Pose& from, const cl::Pose& to, std::size_t move);
 
 }  // namespace burin::verify

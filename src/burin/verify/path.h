@@ -26,7 +26,8 @@ struct PathPiece {
   bool rapid = false;
 };
 
-/// What one tool does. The way to the first GOTO after a tool change is unknown: the motion begins in it.
+/// What one tool does. The way to the first GOTO after a tool change is unknown: the motion begins in it, and
+/// its piece has no length. The same after a move that ends nobody knows where.
 struct ToolPath {
   CheckedMill tool;
   int tool_number = 0;
@@ -48,14 +49,20 @@ struct CheckedPath {
   std::size_t piece_count() const;
 };
 
+/// What every check asks of a path: tools as check_mill takes them, numbers that are numbers (range); poses
+/// that are finite with unit axes, turns that a great circle decides (geometry; names the move).
+Result<void> validate(const CheckedPath& path);
+
 struct PathOptions {
   double motion_mm = 0.0005;
   std::size_t max_pieces = 20'000'000;
+  std::vector<bool> unknown;  ///< by move (empty: none): where it ends only the machine knows; no piece then
 };
 /// Shape of tool `number`: the job's, or what CUTTER/ says. Error: none is known (names what would be
 /// accepted).
 using ToolSource = std::function<Result<CheckedMill>(const cl::ToolChange&)>;
 
+/// Loading the tool that is loaded already changes nothing.
 /// The program as tool-centre-point control runs it: tip straight or along its arc, axis along the great
 /// circle, rapids the same. Errors: not finite, axis not a unit vector (geometry, names the move), a feed
 /// move that turns the axis by half a turn, no tool, too many pieces (range).

@@ -10,6 +10,7 @@
 #include "burin/geom/point_tools.h"
 #include "burin/geom/surface/closest.h"
 #include "burin/geom/surface/evaluate.h"
+#include "burin/verify/mill_search.h"
 #include "burin/verify/swept_tool.h"
 
 namespace burin::verify {
@@ -154,13 +155,14 @@ Result<void> validate(const std::vector<StripPass>& passes, const StripOptions& 
 
 /// Tool and poses as check_mill takes them.
 Result<void> validate(const std::vector<StripPass>& passes, const CheckedMill& tool) {
-  const geom::Mesh nothing;
+  if (auto ok = validate(tool); !ok) return ok.error();
   for (const StripPass& pass : passes)
-    for (const auto& run : pass.runs) {
-      PoseMotion poses;
-      for (const StripStation& s : run) poses.push_back(s.pose);
-      if (auto ok = check_mill(nothing, tool, poses); !ok) return ok.error();
-    }
+    for (const auto& run : pass.runs)
+      for (std::size_t i = 0; i < run.size(); ++i) {
+        if (auto ok = validate_pose(run[i].pose, i); !ok) return ok.error();
+        if (i == 0) continue;
+        if (auto ok = validate_turn(run[i - 1].pose, run[i].pose, i); !ok) return ok.error();
+      }
   return {};
 }
 

@@ -125,11 +125,15 @@ double chosen_spacing(const Sampler& sampler, const SampleOptions& options) {
     return widened(sampler, better, std::max(options.max_samples, sampler.triangles()));
   }
   const std::size_t most = std::min(options.max_samples, std::max(kUsualSamples, 2 * sampler.triangles()));
-  const double wanted = std::sqrt(4 * options.least_radius_mm * kBetweenMm);
+  const double wanted = usual_spacing(options.least_radius_mm);
   return widened(sampler, std::max(wanted, 0.8 * sampler.spacing_for(most)), most);
 }
 
 }  // namespace
+
+double usual_spacing(double least_radius_mm) {
+  return std::sqrt(4 * least_radius_mm * kBetweenMm);
+}
 
 Result<SampledSurface> sample_surface(const geom::Mesh& mesh, const std::vector<bool>& machined,
                                       const std::vector<geom::Vec3>& normals, const SampleOptions& options) {

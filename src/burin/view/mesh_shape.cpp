@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -59,10 +60,11 @@ class Clusters {
         c[0] != c[1] && c[1] != c[2] && c[2] != c[0] && c[0] != kNone && c[1] != kNone && c[2] != kNone;
     return whole ? std::optional(c) : std::nullopt;
   }
+  std::vector<std::uint32_t> cells() && { return std::move(cell_of_); }
   std::vector<Point3> points;
 
  private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNone = ReducedMesh::kGone;
   std::uint64_t key(Point3 p, Vec3 side) const {
     const auto part = [this](double v) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v / cell_))) & 0xfffffu;
@@ -95,6 +97,7 @@ std::optional<ReducedMesh> clustered(const geom::Mesh& mesh, std::size_t first, 
     out.source.push_back(i);
   }
   out.mesh.vertices = std::move(clusters.points);
+  out.became = std::move(clusters).cells();
   return out;
 }
 
@@ -106,6 +109,8 @@ ReducedMesh reduced(const geom::Mesh& mesh, std::size_t first, std::size_t end, 
   if (end - first <= max_triangles) {
     ReducedMesh out;
     out.mesh.vertices = mesh.vertices;
+    out.became.resize(mesh.vertices.size());
+    std::iota(out.became.begin(), out.became.end(), 0u);
     for (std::size_t i = first; i < end; ++i)
       out.mesh.triangles.push_back(mesh.triangles[i]), out.source.push_back(i);
     return out;

@@ -21,6 +21,9 @@ struct Shape {
 struct ReducedMesh {
   geom::Mesh mesh;
   std::vector<std::size_t> source;
+  /// Of each vertex of the whole mesh: the vertex it became, or kGone.
+  std::vector<std::uint32_t> became;
+  static constexpr std::uint32_t kGone = 0xffffffffu;
 };
 /// Triangles `first` to `end` of the mesh; where they are more than max_triangles, vertices that are near
 /// each other are put together (edges keep their own vertices).

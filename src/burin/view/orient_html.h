@@ -29,6 +29,11 @@ struct OrientPicture {
   };
   std::vector<Figure> figures;
   std::string nc_text;
+  // For the viewer (orient_scene): the program with the index of the point over all paths as source, as
+  // orient::to_cl makes it, its machine, and the NC lines of its records.
+  const cl::Program* program = nullptr;
+  const kinematics::Kinematics* machine = nullptr;
+  std::vector<std::uint32_t> nc_line_to_record;
 };
 
 /// Part, paths and tool axes in space (tool shown at the picked point); effective radius initial and optimal

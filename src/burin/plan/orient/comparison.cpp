@@ -14,7 +14,6 @@ namespace {
 constexpr int kTilts = 64;
 /// A ball of the whole radius of curvature would touch all over: this share of it is taken.
 constexpr double kBallShare = 0.9;
-constexpr std::size_t kMostPaths = 100'000;
 
 std::string bytes_of(double value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};

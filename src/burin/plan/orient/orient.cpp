@@ -17,8 +17,6 @@ namespace burin::orient {
 
 namespace {
 
-constexpr std::size_t kMostPaths = 100'000;
-
 Result<void> validate(const OrientOptions& o) {
   const auto bad = [](const std::string& what) -> Result<void> { return Error{ErrorCode::range, what, {}}; };
   const AngleRange& r = o.range;
@@ -335,9 +333,12 @@ Result<OrientPlan> plan(const Part& part, const Scene& scene, const MachineLimit
   const auto run = [&](const PathTask& with, OrientPlan& out) -> Result<void> {
     for (std::size_t face = 0; face < families.size(); ++face) {
       const auto number = static_cast<int>(face);
-      auto ok = with.options->objective == Objective::strip && with.options->search == Search::optimal
-                    ? plan_strips(families[face], number, with, workers, progress, out)
-                    : plan_family(families[face], number, with, workers, progress, out);
+      // Where the places are given no way to count strips leads to fewer paths than another.
+      const bool by_strips = with.options->objective == Objective::strip &&
+                             with.options->search == Search::optimal &&
+                             !even_places(families[face], *with.options);
+      auto ok = by_strips ? plan_strips(families[face], number, with, workers, progress, out)
+                          : plan_family(families[face], number, with, workers, progress, out);
       if (!ok) return ok;
       std::size_t points = 0;
       for (const OrientedPath& path : out.paths) points += path.points.size();

@@ -84,6 +84,9 @@ struct Lane {
 };
 using LanePlanner = std::function<std::vector<Lane>(const std::vector<double>& ws)>;
 
+/// Of one face, wherever a number of paths is asked for or laid.
+inline constexpr int kMostPaths = 100'000;
+
 /// Places w such that between neighbours right strip and left strip together cover the distance everywhere
 /// (no more than `scallop` is left), with as few paths as that allows within 2 %, first and last at the
 /// borders. Rounds: coarse strips first, then what is missing or too much. Error (range): more than
