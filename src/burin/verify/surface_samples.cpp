@@ -143,8 +143,8 @@ Result<SampledSurface> sample_surface(const geom::Mesh& mesh, const std::vector<
   if (!(sampler.area() > 0)) return geometry("the mesh has no area");
   const std::size_t most = options.max_samples;
   const auto too_many = [&](const std::string& what) {
-    return range(what + ", more than the " + std::to_string(most) + " allowed (a spacing of " +
-                 format_fixed(widened(sampler, sampler.spacing_for(most), most), 4) + " mm would do)");
+    return range(what + ", more than the " + std::to_string(most) + " allowed (a spacing of about " +
+                 format_fixed(sampler.spacing_for(most / 2 + 1), 4) + " mm would do)");
   };
   if (sampler.triangles() > most)
     return range("the mesh has " + std::to_string(sampler.triangles()) +
