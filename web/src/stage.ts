@@ -133,7 +133,7 @@ export class Stage {
 
   private connect(canvas: HTMLCanvasElement): void {
     const { store, view } = this, on = (keys: (keyof State)[], call: (s: Readonly<State>) => void): void => store.on(keys, s => { call(s); this.invalidate(); });
-    on(["time", "node", "playing", "show", "trial"], () => { this.path.update(); this.tool.update(); this.turnTable(); this.stock.update(); });
+    on(["time", "node", "playing", "show", "trial"], () => { this.path.update(); this.tool.update(); this.turnTable(); });
     on(["show"], () => { this.part.update(); this.outlines.update(); });
     on(["colour", "range", "only"], () => this.path.recolour());
     on(["heat", "heatRange"], () => { this.part.update(); this.outlines.update(); });
@@ -236,6 +236,7 @@ export class Stage {
   }
   private draw(): void {
     const begin = performance.now(), { view } = this;
+    this.stock.update();
     this.ground.zoomed(view.pixel);
     view.place();
     this.path.zoomed(view.pixel, view.viewProjection().multiply(this.partFrame.matrix), this.ribbons);

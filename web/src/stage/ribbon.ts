@@ -8,6 +8,7 @@ import { CLIP_FRAGMENT, CLIP_VERTEX } from "./materials";
 const TEXELS = 2048; // a row
 const PIECE = 512; // ways that are left out together
 const LONGEST = 4, NEAR = 0.3, MOST_SKIPPED = 64; // pixels, nodes: of a thread's chords
+const LEVELS = 4; // kept
 
 /** What a way looks like; as path.kind where it is one. */
 export const Look = { dashed: 0, plain: 1, thin: 4, hidden: 128 } as const;
@@ -118,6 +119,7 @@ export class Chain {
       if (!skip) { out[made++] = i; from = i; }
     }
     const index = new BufferAttribute(out.slice(0, made), 1);
+    if (this.levels.size >= LEVELS) this.levels.delete(this.levels.keys().next().value!);
     this.levels.set(level, index);
     return index;
   }
