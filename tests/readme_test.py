@@ -29,6 +29,18 @@ for command in commands:
     unreached = any(name in command for name in ("keyway.toml", "orient examples/walls", "orient examples/propeller"))
     assert run.returncode == (3 if unreached else 0), run.stderr
 
+# What the programs do, by code that shares nothing with the planners: the small ones of each mill operation (laser: verify_laser_cli_test).
+subprocess.run([burin, "orient", "examples/walls/walls.toml", "--cl", "walls.cl", "--quiet"], cwd=work, env=env)
+for design, path, code, gouge, excess in (("cam/cam.toml", "cam.ngc", 0, 0.0055, 0.02), ("keys/keys.nc", "keys.ngc", 0, 0.011, 0.025),
+                                          ("walls/walls.toml", "walls.cl", 3, 0.024, 5.1)):
+    run = subprocess.run([burin, "verify", "examples/" + design, "--path", path, "--samples", "5000", "--max-gouge", str(gouge), "--max-excess",
+                          str(excess), "--json", "check.json"], cwd=work, env=env, capture_output=True, text=True, timeout=600)
+    print(f"exit {run.returncode}: verify {design}\n{run.stdout}")
+    assert run.returncode == code, run.stderr
+    with open(os.path.join(work, "check.json")) as f:
+        quality = json.load(f)["quality"]
+    assert quality["collisions"] == [] and (quality["unmachined_area_mm2"] > 0) == (code == 3), quality
+
 # The listing of k.ngc.
 listing = readme.split("`k.ngc` starts with\n\n")[1].split("\n\n")[0]
 wanted = [line[4:] for line in listing.splitlines()]

@@ -107,6 +107,10 @@ class Reader {
     in_.joints = std::move(file->joints);
     in_.tip_straight = std::move(file->tip_straight);
     moving_.unknown = std::move(file->unknown);
+    // Programs begin at an origin that is made up: the way of a first rapid is the machine's.
+    const auto& records = in_.program.records;
+    const auto first = std::find_if(records.begin(), records.end(), cl::is_motion);
+    if (std::holds_alternative<cl::Rapid>(*first)) in_.program.from.reset();
     design_.described.merge(file->described);
     in_.program_text = std::move(*text);
     return {};
