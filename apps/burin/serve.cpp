@@ -148,6 +148,11 @@ Result<void> serve(const Served& served, int port, const std::function<void(cons
   server.set_payload_max_length(0);
   server.set_read_timeout(kTimeout_s);
   server.set_write_timeout(kTimeout_s);
+  // The library's own choice, SO_REUSEPORT, lets a second server share a port that is taken.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   int open_port = port;
   set_headers(server);
   set_gate(server, open_port);
