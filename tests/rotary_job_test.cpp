@@ -13,11 +13,9 @@
 
 #include "burin/base/text.h"
 #include "burin/job/rotary_job.h"
-#include "burin/job/verify_tools.h"
 #include "burin/nc/program.h"
 #include "burin/plan/rotary/rotary_cases.h"
 #include "burin/post/emit.h"
-#include "verify_support.h"
 
 namespace burin::job {
 namespace {
@@ -226,23 +224,6 @@ void expect_consistent(const Outcome& out) {
       ASSERT_NE(out.plan.points[i].place.state, rotary::State::unreachable);
 }
 
-/// All of verify, by the joints. (Its cutters end with their hemisphere: below a thinner shank the upper half
-/// of the ball is missed.)
-void expect_verified(const Outcome& out) {
-  if (out.tool.shank_radius < out.tool.radius) return;
-  std::vector<kinematics::Joints> joints;
-  for (const kinematics::JointMove& move : out.joints.moves) joints.push_back(move.to);
-  const verified::Says says = verified::say(
-      {out.part.mesh, {}, machined_triangles(out.part), out.part.deflection_mm},
-      verified::path_of(out.cl, joints, machine(), checked_mill(out.tool)), 1, out.options.tolerance_mm);
-  EXPECT_LE(says.deviation.gouge.mm, (1 + kMotionShare) * out.options.tolerance_mm + says.bound_mm);
-  // What goes deeper than the tolerance by what the mesh and verify itself leave open is none of the plan's.
-  for (const verify::Collision& c : says.collisions.collisions)
-    EXPECT_LE(c.depth_mm, (1 + kMotionShare) * out.options.tolerance_mm + out.part.deflection_mm +
-                              says.collisions.bound_mm)
-        << verify::name(c.body) << " in move " << c.move;
-}
-
 TEST(RotaryJob, RandomPartsAreCutWithoutGouge) {
   const char* asked = std::getenv("BURIN_CASES");
   const int cases = asked ? static_cast<int>(parse_double(asked).value_or(0)) : 12;
@@ -275,7 +256,6 @@ TEST(RotaryJob, RandomPartsAreCutWithoutGouge) {
       worst = std::max(worst, (check.report.gouge_max_mm() - rounding) / out->options.tolerance_mm);
       if (!by_nc) expect_listed(*out, check);
     }
-    expect_verified(*out);
     moved += out->plan.counts.moved > 0;
     unreachable += out->plan.counts.unreachable > 0;
     if (asked)

@@ -88,10 +88,13 @@ class Case(unittest.TestCase):
         self.assertEqual(done.returncode, expect, done.stderr.decode(errors="replace"))
         return done
 
+    def page(self, name):
+        with open(os.path.join(self.folder, name), "rb") as f:
+            return scene_of(f.read())
+
     def view(self, *args):
         self.run_burin("view", *args, "-o", "v.html")
-        with open(os.path.join(self.folder, "v.html"), "rb") as f:
-            return scene_of(f.read())
+        return self.page("v.html")
 
 
 class Pages(Case):
@@ -155,7 +158,7 @@ class Pages(Case):
 
     def test_rotary(self):
         job = os.path.join(EXAMPLES, "cam", "cam.toml")
-        self.run_burin("rotary", job, "-o", "r.ngc", "--cl", "r.cl")
+        self.run_burin("rotary", job, "-o", "r.ngc", "--cl", "r.cl", "--view", "r.html")
         s = self.view(job, "r.ngc")
         self.assertEqual([a["letter"] for a in s.directory["machine"]["axes"]], ["A"])
         rotary, axis = s.get("path.rotary"), s.get("path.axis") / 32767 * 32767
@@ -163,14 +166,33 @@ class Pages(Case):
         np.testing.assert_allclose(np.abs(axis[:, 2]), np.abs(np.cos(turn)), atol=2e-4)
         self.assertEqual(s.directory["operation"], "rotary")
         self.assertEqual([p["kind"] for p in s.directory["tools"][0]["pieces"]][-1], 2)
+        planned = self.page("r.html")
+        names = [x["name"] for x in planned.directory["series"]]
+        theta = planned.get(f"series.{names.index('axis')}")[:, 0]
+        cuts = ~np.isnan(theta)
+        ends = cuts & np.append(np.diff(planned.get("path.move")[:, 0]) != 0, True)
+        np.testing.assert_allclose(np.sin(np.radians(theta[ends])), planned.get("path.axis")[ends, 1], atol=1e-3)
+        lo, hi = (planned.get(f"series.{names.index(n)}")[:, 0] for n in ("reachable from", "reachable to"))
+        known = cuts & ~np.isnan(lo)
+        self.assertTrue((lo[known] <= theta[known] + 1e-2).all() and (theta[known] <= hi[known] + 1e-2).all())
 
     def test_orient(self):
         job = os.path.join(EXAMPLES, "saddle", "saddle.toml")
-        self.run_burin("orient", job, "--cl", "o.cl")
+        self.run_burin("orient", job, "--cl", "o.cl", "--view", "o.html")
         s = self.view(job, "o.cl")
         self.assertEqual(s.directory["operation"], "orient")
         self.assertAlmostEqual(np.linalg.norm(s.get("path.axis"), axis=1).min(), 1, places=3)
         self.assertIsNotNone(s.directory["machine"])
+        planned = self.page("o.html")
+        names = [x["name"] for x in planned.directory["series"]]
+        self.assertLessEqual({"effective radius", "tilt", "yaw", "gain"}, set(names))
+        tilt, yaw = (planned.get(f"series.{names.index(n)}")[:, 0] for n in ("tilt", "yaw"))
+        self.assertGreater(len(planned.directory["cspaces"]), 10)
+        for k, c in enumerate(planned.directory["cspaces"]):
+            self.assertAlmostEqual(c["chosen"][0], tilt[c["node"]], delta=1e-2)
+            self.assertAlmostEqual(c["chosen"][1], yaw[c["node"]], delta=1e-2)
+            cause, radius = planned.get(f"cspace.{k}.cause")[:, 0], planned.get(f"cspace.{k}.radius")[:, 0]
+            self.assertTrue((np.isnan(radius) | (cause == 0)).all())
 
     def test_check_and_stock(self):
         block = []

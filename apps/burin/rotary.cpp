@@ -10,6 +10,7 @@
 #include "burin/job/rotary_job.h"
 #include "burin/post/emit.h"
 #include "burin/view/rotary_html.h"
+#include "burin/view/rotary_scene.h"
 #include "cli.h"
 #include "commands.h"
 #include "joint_options.h"
@@ -20,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RotaryArgs {
-  std::string job, points;
+  std::string job, points, view;
   std::optional<double> tolerance;
   std::optional<rotary::Tsi> tsi;
   std::optional<rotary::Tai> tai;
@@ -145,8 +146,9 @@ void warn_of_gouge(const job::RotaryJobFile& file, const job::RotaryCheck& check
   say(check.report.holder, "holder");
 }
 
-std::string html(const RotaryArgs& args, const job::RotaryJobFile& file, const job::RotaryJob& job,
-                 const std::string& nc_text, const Session& session) {
+view::RotaryPicture picture_of(const RotaryArgs& args, const job::RotaryJobFile& file,
+                               const job::RotaryJob& job, const post::NcText& nc,
+                               const kinematics::Kinematics& machine, const Session& session) {
   view::RotaryPicture picture;
   picture.title = fs::path(args.job).stem().string();
   picture.command_line = session.command_line;
@@ -155,7 +157,10 @@ std::string html(const RotaryArgs& args, const job::RotaryJobFile& file, const j
   picture.tool = &file.tool;
   picture.options = &file.options;
   picture.diagnostics = &session.diagnostics;
-  picture.nc_text = nc_text;
+  picture.nc_text = nc.text;
+  picture.nc_line_to_record = nc.line_to_record;
+  picture.program = &job.cl;
+  picture.machine = &machine;
   const Report& r = session.report;
   const auto add = [&](const char* group, const std::string& name, std::string value) {
     picture.figures.push_back({group, name, std::move(value)});
@@ -166,13 +171,14 @@ std::string html(const RotaryArgs& args, const job::RotaryJobFile& file, const j
   for (const auto& [key, value] : r.lengths_mm.items())
     add("Lengths", key, format_fixed(value.get<double>(), 1) + " mm");
   add("Time", "machining", format_fixed(r.time_s["machining"].get<double>(), 1) + " s");
-  return view::rotary_html(picture);
+  return picture;
 }
 
 // --- the run
 
 Result<void> put_outputs(const RotaryArgs& args, const job::RotaryJobFile& file, const job::RotaryJob& job,
-                         const post::NcText& nc, const std::string& nc_path, Session& session) {
+                         const post::NcText& nc, const kinematics::Kinematics& machine,
+                         const std::string& nc_path, Session& session) {
   if (auto ok = session.put_made(nc_path, [&] { return nc.text; }); !ok) return ok;
   if (auto ok = session.put_made(args.points, [&] { return points_csv(job.plan); }); !ok) return ok;
   if (auto ok = session.put_made(session.common.cl, [&] { return cl::write_apt(job.cl); }); !ok) return ok;
@@ -180,13 +186,22 @@ Result<void> put_outputs(const RotaryArgs& args, const job::RotaryJobFile& file,
                                  [&] { return view::rotary_svg(job.part, job.plan, file.tool); });
       !ok)
     return ok;
-  return session.put_made(session.common.html, [&] { return html(args, file, job, nc.text, session); });
+  if (session.common.html.empty() && args.view.empty()) return {};
+  const view::RotaryPicture picture = picture_of(args, file, job, nc, machine, session);
+  if (auto ok = session.put_made(session.common.html, [&] { return view::rotary_html(picture); }); !ok)
+    return ok;
+  if (args.view.empty()) return {};
+  auto shown = view::rotary_scene(picture);
+  if (!shown) return shown.error();
+  auto page = view::viewer_page(*shown);
+  if (!page) return page.error();
+  return session.put(args.view, *std::move(page));
 }
 
 /// -o, or the job's name with .ngc when nothing else is asked for.
 std::string nc_name(const RotaryArgs& args, const Common& c) {
-  const bool nothing_else =
-      args.points.empty() && c.cl.empty() && c.json.empty() && c.html.empty() && c.svg.empty();
+  const bool nothing_else = args.points.empty() && c.cl.empty() && c.json.empty() && c.html.empty() &&
+                            c.svg.empty() && args.view.empty();
   if (!c.output.empty() || !nothing_else) return c.output;
   return fs::path(args.job).replace_extension(".ngc").string();
 }
@@ -206,7 +221,7 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
   auto text = session.read_input(args.job);
   if (!text) return text.error();
   const std::string nc_path = nc_name(args, session.common);
-  for (const std::string& path : {nc_path, args.points}) {
+  for (const std::string& path : {nc_path, args.points, args.view}) {
     if (path.empty() || path == session.common.output) continue;  // -o is reserved already
     if (auto ok = session.reserve_output(path); !ok) return ok;
   }
@@ -232,11 +247,11 @@ Result<void> run_rotary(const RotaryArgs& args, Session& session) {
   auto nc = post::emit_joints(job->cl, *machine, job->joints, *dialect, emit, session.diagnostics);
   if (!nc) return in_file(nc.error(), args.job);
   std::optional<job::RotaryCheck> check;
-  if (!session.common.json.empty() || !session.common.html.empty())
+  if (!session.common.json.empty() || !session.common.html.empty() || !args.view.empty())
     check = job::check_rotary_job(*file, *job, *machine);
   if (check) warn_of_gouge(*file, *check, session);
   fill_report(*file, *job, *nc, *machine, check, session);
-  return put_outputs(args, *file, *job, *nc, nc_path, session);
+  return put_outputs(args, *file, *job, *nc, *machine, nc_path, session);
 }
 
 }  // namespace
@@ -271,6 +286,8 @@ void add_rotary(Cli& cli) {
       [args](Session& session) { return run_rotary(*args, session); });
   add_text(app, "JOB.toml", args->job, "FILE", "part, tool, operation and machine")->required();
   add_text(app, "--points", args->points, "FILE", "contact points, axes and reachable angles as CSV");
+  add_text(app, "--view", args->view, "FILE",
+           "the path in the viewer's page: played, with the reachable axes");
   add_feed_mode(app, args->joints, "");
   add_choice<std::optional<rotary::Tsi>>(
       app, "--tsi", args->tsi, {{"surface", rotary::Tsi::surface}, {"path", rotary::Tsi::path}},

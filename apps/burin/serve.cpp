@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "serve.h"
 
+#include <fcntl.h>
 #include <httplib.h>
-#include <pthread.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <string_view>
 #include <thread>
 
@@ -77,48 +82,77 @@ void give(httplib::Server& server, const char* path, const char* type, const std
   });
 }
 
-/// SIGINT and SIGTERM, taken by one thread while the others do not get them.
+/// Where the handler of signals writes to; a handler can reach nothing else.
+volatile std::sig_atomic_t wake_fd = -1;
+
+extern "C" void wake(int) {
+  const char byte = 0;
+  [[maybe_unused]] const ssize_t ignored = write(wake_fd, &byte, 1);
+}
+
+/// SIGINT and SIGTERM stop the server, whichever thread gets them: those of the work before are still there.
 class Signals {
  public:
   Signals() {
-    sigemptyset(&set_);
-    sigaddset(&set_, SIGINT);
-    sigaddset(&set_, SIGTERM);
-    pthread_sigmask(SIG_BLOCK, &set_, &before_);
+    if (pipe2(pipe_, O_CLOEXEC) != 0) return;
+    wake_fd = pipe_[1];
+    struct sigaction action {};
+    action.sa_handler = wake;
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = SA_RESTART;
+    sigaction(SIGINT, &action, &interrupt_);
+    sigaction(SIGTERM, &action, &terminate_);
   }
   ~Signals() {
-    if (waiter_.joinable()) {
-      pthread_kill(waiter_.native_handle(), SIGTERM);
-      waiter_.join();
-    }
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+    if (pipe_[0] < 0) return;
+    wake(0);
+    if (waiter_.joinable()) waiter_.join();
+    sigaction(SIGINT, &interrupt_, nullptr);
+    sigaction(SIGTERM, &terminate_, nullptr);
+    close(pipe_[0]);
+    close(pipe_[1]);
   }
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
+  bool ready() const { return pipe_[0] >= 0; }
   void stop_on_signal(httplib::Server& server) {
     waiter_ = std::thread([this, &server] {
-      int signal = 0;
-      sigwait(&set_, &signal);
+      char byte = 0;
+      while (read(pipe_[0], &byte, 1) < 0 && errno == EINTR) {
+      }
+      // Stopping before it has begun to listen would be lost.
+      while (!server.is_running() && !done_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
       server.stop();
     });
   }
+  /// Nobody listens any more.
+  void done() { done_ = true; }
 
  private:
-  sigset_t set_{}, before_{};
+  int pipe_[2] = {-1, -1};
+  struct sigaction interrupt_ {
+  }, terminate_{};
+  std::atomic<bool> done_ = false;
   std::thread waiter_;
 };
 
 }  // namespace
 
 Result<void> serve(const Served& served, int port, const std::function<void(const std::string& url)>& ready) {
-  Signals signals;
   httplib::Server server;
+  Signals signals;  // gone before the server that it stops
+  if (!signals.ready()) return Error{ErrorCode::io, "no pipe can be opened (fewer open files)", {}};
   server.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
   // A body is never read, so a connection that sent one cannot go on.
   server.set_keep_alive_max_count(1);
   server.set_payload_max_length(0);
   server.set_read_timeout(kTimeout_s);
   server.set_write_timeout(kTimeout_s);
+  // The library's own choice, SO_REUSEPORT, lets a second server share a port that is taken.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
   int open_port = port;
   set_headers(server);
   set_gate(server, open_port);
@@ -140,7 +174,9 @@ Result<void> serve(const Served& served, int port, const std::function<void(cons
                  {}};
   signals.stop_on_signal(server);
   ready("http://127.0.0.1:" + std::to_string(open_port) + "/");
-  if (!server.listen_after_bind()) return Error{ErrorCode::io, "the connection was lost", {}};
+  const bool listened = server.listen_after_bind();
+  signals.done();
+  if (!listened) return Error{ErrorCode::io, "the connection was lost", {}};
   return {};
 }
 

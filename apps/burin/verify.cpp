@@ -37,6 +37,18 @@ Result<job::VerifyOptions> options_of(const VerifyArgs& args, const Session& ses
   return options;
 }
 
+Result<std::string> page_of(const VerifyArgs& args, const job::VerifyInput& input,
+                            const job::VerifyResult& result, const Session& session) {
+  const auto name = [](const std::string& path) { return std::filesystem::path(path).filename().string(); };
+  view::VerifySceneOptions options;
+  options.title = name(args.options.design) + ", " + name(args.options.path);
+  options.command_line = session.command_line;
+  options.program_name = name(args.options.path);
+  auto scene = view::verify_scene(input, &result, &session.diagnostics, options);
+  if (!scene) return scene.error();
+  return view::viewer_page(*scene);
+}
+
 Result<void> put_outputs(const VerifyArgs& args, const job::VerifyInput& input,
                          const job::VerifyResult& result, Session& session) {
   if (auto ok = session.put_made(args.csv, [&] { return verify_csv(result); }); !ok) return ok;
@@ -46,15 +58,9 @@ Result<void> put_outputs(const VerifyArgs& args, const job::VerifyInput& input,
     if (auto ok = session.put(args.stl, io::write_stl(result.removal->mesh())); !ok) return ok;
   }
   if (session.common.html.empty()) return {};
-  view::VerifySceneOptions options;
-  options.title = std::filesystem::path(args.options.path).stem().string();
-  options.command_line = session.command_line;
-  options.program_name = std::filesystem::path(args.options.path).filename().string();
-  auto scene = view::verify_scene(input, &result, &session.diagnostics, options);
-  if (!scene) return scene.error();
-  auto page = view::viewer_page(*scene);
+  auto page = page_of(args, input, result, session);
   if (!page) return page.error();
-  return session.put(session.common.html, std::move(*page));
+  return session.put(session.common.html, *std::move(page));
 }
 
 Result<void> run_verify_command(const VerifyArgs& args, Session& session) {

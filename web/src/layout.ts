@@ -5,6 +5,7 @@ import type { Store } from "./state";
 import "./style.css";
 import { button, copy, el, icon, save, tell, themed } from "./ui";
 import { count, duration, length } from "./logic/format";
+import { makeInspect } from "./inspect";
 import { makeKeyboard } from "./keyboard";
 import { makeLegend } from "./legend";
 import { PANELS } from "./panels";
@@ -127,6 +128,7 @@ function applyTheme(store: Store): void {
 export function makeLayout(app: HTMLElement, scene: Scene, store: Store): { stage: HTMLElement } {
   applyTheme(store);
   const stage = el("div", { class: "stage" }), keys = makeKeyboard(scene, store, stage), { panels, rail } = side(scene, store);
+  stage.append(makeInspect(scene, store));
   const view = el("main", { class: "view", "aria-label": "Part and tool path" }, makeToolbar(scene, store), stage, makeLegend(scene, store));
   app.classList.add("app");
   app.replaceChildren(header(scene, store, stage, keys.help), view, splitter(), panels, rail, makeTimeline(scene, store));

@@ -19,6 +19,14 @@ import type { State, Store } from "./state";
 
 export interface Stats { frames: number; frameMs: number; pickMs: number; stockMs: number; stockTriangles: number; waiting: boolean; segments: number; triangles: number; webgl: boolean }
 
+/** Ways in sight that are drawn with a width, by a graphics card and without one. */
+const RIBBONS = 400_000, RIBBONS_SOFTWARE = 12_000;
+const LARGE = 60_000; // nodes and triangles
+
+function software(gl: WebGL2RenderingContext | null): boolean {
+  const info = gl?.getExtension("WEBGL_debug_renderer_info");
+  return !!gl && !!info && /swiftshader|llvmpipe|software|basic render/i.test(String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
+}
 const CURSOR = 9, FINGER = 20; // CSS pixels about them that count as under them
 
 /** What is looked at: bodies and cuts; rapids only when there is nothing else. */
@@ -55,6 +63,7 @@ export class Stage {
   private axes!: TableAxes;
   private ground!: Ground;
   private picker!: Picker;
+  private ribbons = RIBBONS;
   private asked = false;
   private last = 0;
   private frames = 0;
@@ -71,12 +80,14 @@ export class Stage {
     canvas.tabIndex = 0;
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "Part and tool path. Shift and arrows turn, Alt and arrows move, + and - zoom.");
-    const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, stencil: true, powerPreference: "high-performance" });
+    // Without a graphics card much is drawn slowly: a large scene then goes without smooth edges.
+    const amount = scene.path.count + scene.meshes.reduce((n, m) => n + m.index.length / 3, 0), slow = amount > LARGE && software(document.createElement("canvas").getContext("webgl2"));
+    const gl = canvas.getContext("webgl2", { antialias: !slow, alpha: false, stencil: true, powerPreference: "high-performance" });
     if (!gl) { this.withoutGraphics(); return; }
     box.append(canvas);
     this.renderer = new WebGLRenderer({ canvas, context: gl });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
-    this.renderer.info.autoReset = true;
+    this.ribbons = software(gl) ? RIBBONS_SOFTWARE : RIBBONS;
     this.fill();
     this.connect(canvas);
   }
@@ -122,7 +133,7 @@ export class Stage {
 
   private connect(canvas: HTMLCanvasElement): void {
     const { store, view } = this, on = (keys: (keyof State)[], call: (s: Readonly<State>) => void): void => store.on(keys, s => { call(s); this.invalidate(); });
-    on(["time", "node", "playing", "show", "trial"], () => { this.path.update(); this.tool.update(); this.turnTable(); this.stock.update(); });
+    on(["time", "node", "playing", "show", "trial"], () => { this.path.update(); this.tool.update(); this.turnTable(); });
     on(["show"], () => { this.part.update(); this.outlines.update(); });
     on(["colour", "range", "only"], () => this.path.recolour());
     on(["heat", "heatRange"], () => { this.part.update(); this.outlines.update(); });
@@ -225,10 +236,11 @@ export class Stage {
   }
   private draw(): void {
     const begin = performance.now(), { view } = this;
+    this.stock.update();
     this.ground.zoomed(view.pixel);
-    this.path.zoomed(view.pixel);
-    this.renderer!.render(this.root, view.camera);
     view.place();
+    this.path.zoomed(view.pixel, view.viewProjection().multiply(this.partFrame.matrix), this.ribbons);
+    this.renderer!.render(this.root, view.camera);
     this.overlay.frame(view.right, view.up, view.back, view.pixel);
     this.overlay.say(this.labels());
     this.frameMs = performance.now() - begin;

@@ -83,7 +83,7 @@ function strip(scene: Scene, store: Store): HTMLElement {
   let from = 0, to = m.duration || 1;
   const x = (t: number) => (t - from) / (to - from) * box.clientWidth, t = (px: number) => from + px / Math.max(1, box.clientWidth) * (to - from);
   const drawn = sheet(canvas, ({ g, w, h }) => {
-    const dark = isDark(store.state), cols = Math.max(1, Math.floor(w)), b = bands(path, from, to, cols), y = 15, mid = h - 22, groups = scene.groups.length > 1;
+    const dark = isDark(store.state), cols = Math.max(1, Math.floor(w)), b = bands(path, from, to, cols), y = marks.length > 0 ? 14 : 5, mid = h - 22, groups = scene.groups.length > 1;
     for (let c = 0, begin = 0; c <= cols; ++c) {
       if (c > 0 && (c === cols || b.kind[c] !== b.kind[begin] || b.group[c] !== b.group[begin])) {
         if (b.kind[begin] !== NO_KIND) {

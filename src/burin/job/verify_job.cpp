@@ -13,11 +13,21 @@
 #include "burin/job/verify_design.h"
 #include "burin/job/verify_tools.h"
 #include "burin/kinematics/joint_path.h"
+#include "burin/verify/slivers.h"
 
 namespace burin::job {
 namespace {
 
 using kinematics::Kinematics;
+
+double least_radius(const verify::CheckedPath& path) {
+  double least = 0;
+  for (const verify::ToolPath& tool : path.tools) {
+    const double radius = tool.tool.corner_radius > 0 ? tool.tool.corner_radius : tool.tool.radius;
+    least = least > 0 ? std::min(least, radius) : radius;
+  }
+  return least;
+}
 
 class Reader {
  public:
@@ -37,7 +47,9 @@ class Reader {
     in_.obstacles = std::move(design_.obstacles);
     in_.deflection_mm = design_.deflection_mm;
     in_.tolerance_mm = *design_.tolerance_mm;
-    in_.design = std::move(design_.design);
+    // Designs of many faces are meshed in slivers; a spacing that --samples asks for is not known yet.
+    in_.design = verify::cut_slivers(
+        design_.design, options_.spacing_mm.value_or(verify::usual_spacing(least_radius(in_.path))));
     return std::move(in_);
   }
 
@@ -221,15 +233,6 @@ class Reader {
 };
 
 // --- running
-
-double least_radius(const verify::CheckedPath& path) {
-  double least = 0;
-  for (const verify::ToolPath& tool : path.tools) {
-    const double radius = tool.tool.corner_radius > 0 ? tool.tool.corner_radius : tool.tool.radius;
-    least = least > 0 ? std::min(least, radius) : radius;
-  }
-  return least;
-}
 
 constexpr std::size_t kBins = 200;
 

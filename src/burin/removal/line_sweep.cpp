@@ -94,6 +94,7 @@ LineSweep::Frame LineSweep::frame(Vec3 way) const {
   f.e2 = component(f.second, along_);
   f.e3 = component(f.axis, along_);
   if (std::abs(f.w3) < kNone) f.w3 = 0;
+  f.way = std::sqrt(f.w1 * f.w1 + f.w3 * f.w3);
   return f;
 }
 
@@ -281,7 +282,7 @@ void LineSweep::sphere(const Frame& f, const Place& p, double radius, double hei
     for (const double h : {r.lo, r.hi})
       if (zt + h * f.e3 <= 0) out.add(h, time);
   }
-  const double way = std::hypot(f.w1, f.w3);
+  const double way = f.way;
   if (!(way > kNone)) return;
   const double d1 = f.w1 / way, d3 = f.w3 / way;
   const double along = f.e1 * d1 + f.e3 * d3, done = p.x * d1 + z * d3, a = 1 - along * along;
@@ -368,11 +369,10 @@ Vec3 LineSweep::normal(const Frame& f, double h, double time) const {
   const Place p = place(f, du_, dv_);
   const double along = h - tip_h_;
   const Place at{p.x + along * f.e1 - time * f.w1, p.y + along * f.e2, p.z + along * f.e3 - time * f.w3};
-  const double rho = std::hypot(at.x, at.y);
+  const double rho = std::sqrt(at.x * at.x + at.y * at.y);
   const Vec3 aside = rho > 0 ? (at.x / rho) * f.first + (at.y / rho) * f.second : f.first;
   const double out = rho - (body_.radius - body_.corner), down = body_.low + body_.corner - at.z;
-  if (body_.corner > 0 && out > 0 && down > 0)
-    return unit((out / std::hypot(out, down)) * aside - (down / std::hypot(out, down)) * f.axis);
+  if (body_.corner > 0 && out > 0 && down > 0) return unit(out * aside - down * f.axis);
   const double side = std::abs(body_.radius - rho), bottom = std::abs(at.z - body_.low),
                top = std::abs(body_.high - at.z);
   if (side < kOnEdge && std::min(bottom, top) < kOnEdge && std::abs(time) < 0.5)
@@ -383,7 +383,7 @@ Vec3 LineSweep::normal(const Frame& f, double h, double time) const {
 
 /// Of the surface that a sharp edge of the tool sweeps: square to the edge and to its way.
 Vec3 LineSweep::rim_normal(const Frame& f, const Place& at, double up) const {
-  const double rho = std::hypot(at.x, at.y);
+  const double rho = std::sqrt(at.x * at.x + at.y * at.y);
   const Vec3 aside = (at.x / rho) * f.first + (at.y / rho) * f.second;
   const Vec3 way = f.w1 * f.first + f.w3 * f.axis, n = unit(cross(cross(f.axis, aside), way));
   const double outwards = dot(n, aside + up * f.axis);

@@ -67,6 +67,7 @@ class LineSweep {
   struct Frame {
     geom::Vec3 first, second, axis;
     double e1 = 0, e2 = 0, e3 = 0, w1 = 0, w3 = 0;
+    double way = 0;  ///< length of the way
   };
   struct Place {
     double x = 0, y = 0, z = 0;

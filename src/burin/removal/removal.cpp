@@ -80,6 +80,13 @@ Result<void> check(const RemovalOptions& options) {
   return {};
 }
 
+/// Ends of cuts must be known better than the depth from which on something is a contact.
+CutLimits limits_of(const RemovalOptions& options) {
+  double ends = kEnds * options.resolution_mm;
+  if (options.contact_mm > 0) ends = std::min(ends, 0.5 * options.contact_mm);
+  return {ends, options.contact_mm};
+}
+
 double mean_volume(const std::vector<DexelField>& fields) {
   double sum = 0;
   for (const DexelField& f : fields) sum += f.volume();
@@ -136,8 +143,7 @@ Result<std::unique_ptr<Field>> make_field(const Stock& stock, const verify::Chec
   for (DexelField& f : field->fields)
     if (auto ok = fill(f, stock, options.threads); !ok) return ok.error();
   field->stock_mm3 = mean_volume(field->fields);
-  auto contacts = cut_all(field->fields, path, {kEnds * options.resolution_mm, options.contact_mm},
-                          options.threads, progress);
+  auto contacts = cut_all(field->fields, path, limits_of(options), options.threads, progress);
   if (!contacts) return contacts.error();
   field->removed_mm3 = std::max(0.0, field->stock_mm3 - mean_volume(field->fields));
   field->contacts = merge(std::move(*contacts), field->grid, field->fields.size());
@@ -195,13 +201,20 @@ const std::vector<StockContact>& Removal::contacts() const {
   return field_->contacts;
 }
 geom::Mesh Removal::mesh() const {
-  return surface(field_->grid, field_->fields);
+  try {
+    return surface(field_->grid, field_->fields);
+  } catch (const std::bad_alloc&) {
+    return {};
+  }
 }
 StockClock Removal::clock(std::size_t max_nodes) const {
   if (!field_->stock || !field_->path) return {};
-  return make_clock(*field_->stock, *field_->path,
-                    {kEnds * field_->options.resolution_mm, field_->options.contact_mm},
-                    field_->options.threads, max_nodes);
+  try {
+    return make_clock(*field_->stock, *field_->path, limits_of(field_->options), field_->options.threads,
+                      max_nodes);
+  } catch (const std::bad_alloc&) {
+    return {};
+  }
 }
 
 Result<Removal> remove_material(const Stock& stock, const verify::CheckedPath& path,

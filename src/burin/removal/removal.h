@@ -35,7 +35,8 @@ struct RemovalOptions {
   Directions directions = Directions::automatic;
   unsigned threads = 1;  ///< 0: as many as there are; the result is the same for any number
   std::size_t max_dexels = 20'000'000;
-  /// Material that a rapid, shank or holder takes counts as a collision when it is deeper than this.
+  /// Material that a rapid, shank or holder takes counts as a collision when it is deeper than this in the
+  /// body: when the body, made smaller by it all around, still takes some.
   double contact_mm = 0.05;
   /// Keep when each place was cut (for clock()).
   bool keep_times = false;
@@ -45,7 +46,9 @@ struct RemovalOptions {
 struct StockContact {
   std::uint32_t move = 0;  ///< GOTO number
   verify::Body body = verify::Body::cutter;
-  double depth_mm = 0;  ///< longest piece of a dexel taken at once, at most; exact to the resolution
+  /// Most taken out of one dexel during the move, in the direction where that is least; exact to the
+  /// resolution.
+  double depth_mm = 0;
   double volume_mm3 = 0;
   geom::Point3 at;
 };
@@ -79,8 +82,10 @@ class Removal {
   const std::vector<StockContact>& contacts() const;
   /// What is left, closed; sharp edges are kept where three directions are known (dual contouring or
   /// equivalent), facets lie within the resolution.
+  /// Nothing in it when memory does not do.
   geom::Mesh mesh() const;
-  /// About `max_nodes` nodes. Precondition: keep_times.
+  /// At most `max_nodes` nodes (27 at least): the cuts once more on the lines through them. Nothing in it
+  /// without keep_times, or when memory does not do.
   StockClock clock(std::size_t max_nodes) const;
 
  private:

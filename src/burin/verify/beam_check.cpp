@@ -68,6 +68,20 @@ bool part_is_around(const std::vector<Outline>& outlines) {
   return around;
 }
 
+/// Where every edge looked at has the part once on its left and not on its right, outlines do not lie in or
+/// on each other the wrong way round. Should two cross between those places, both still have the right side.
+bool sides_tell(const BeamScene& scene) {
+  constexpr std::size_t kLooks = 20'000;
+  const auto& edges = scene.edges.segments();
+  const std::size_t step = edges.size() / kLooks + 1;
+  for (std::size_t i = 0; i < edges.size(); i += step) {
+    const flat::Point2 p = point_on(edges[i], 0.5);
+    const flat::Vec2 n = kBeside_mm * flat::normal_at(edges[i], 0.5);
+    if (scene.winding(p - n) != 1 || scene.winding(p + n) != 0) return false;
+  }
+  return true;
+}
+
 Result<BeamReport> checked(const std::vector<Outline>& outlines, const cl::Program& program,
                            const BeamCheckOptions& options) {
   if (auto ok = check(options); !ok) return ok.error();
@@ -102,8 +116,10 @@ Result<BeamReport> checked(const std::vector<Outline>& outlines, const cl::Progr
                   std::move(edge_outline),
                   std::move(line_outline),
                   part_is_around(outlines),
+                  false,
                   options.tolerance_mm + options.bound_mm,
                   thread_count(options.threads)};
+  scene.sides_tell = sides_tell(scene);
   auto report = measure_edges(scene);
   if (!report) return report;
   GougeResult gouge = find_gouge(scene);

@@ -291,6 +291,23 @@ TEST(BeamCheck, HolesAloneArePartOfASheet) {
   EXPECT_NEAR(wrong.gouge.mm, kKerf, wrong.bound_mm);
 }
 
+TEST(BeamCheck, OutlinesThatOverlapAreOnePart) {
+  const std::vector<std::vector<Segment>> two{box(0, 0, 10, 10), box(6, 4, 16, 14)};
+  const double d = kRadius;
+  const std::vector<Point2> around{{-d, -d},         {10 + d, -d},    {10 + d, 4 - d}, {16 + d, 4 - d},
+                                   {16 + d, 14 + d}, {6 - d, 14 + d}, {6 - d, 10 + d}, {-d, 10 + d}};
+  Path p;
+  p.cut(polygon(around));
+  const BeamReport r = checked(two, p.program);
+  EXPECT_LE(r.gouge.mm, 1e-9);
+  EXPECT_LE(r.excess.mm, 0.001);
+  EXPECT_EQ(r.uncut_mm, 0);
+  EXPECT_NEAR(r.corner_excess.mm, kRadius * (std::sqrt(2.0) - 1), 0.001);
+  // Where they overlap it is part as well; depth counts from what is drawn.
+  const BeamReport through = checked(two, p.rapid({8, 7}).beam(true).beam(false).program);
+  EXPECT_NEAR(through.gouge.mm, 2, through.bound_mm);
+}
+
 TEST(BeamCheck, AnArcOfUnequalRadiiIsHeldAgainstItsSpiral) {
   Path p;
   p.rapid({3.1, 0}).beam(true);

@@ -26,9 +26,6 @@ constexpr std::size_t kMostLooks = 10, kLooksAtLeast = 1000;
 /// Places a drawing gets at most when no spacing is asked for, and beam diameters from one to the next when
 /// there are fewer.
 constexpr double kMostPlaces = 100'000, kSpacingInKerfs = 2;
-/// Which side of an edge is looked at: above rounding, below what an NC program can say. On the inner side of
-/// an edge the part lies once; more often where outlines overlap or end in tiny loops.
-constexpr double kBeside_mm = 1e-6;
 constexpr int kMostSteps = 60;           ///< into the part at one place
 constexpr double kResolution_mm = 1e-7;  ///< of depths: a tenth of the last decimal of any NC program
 

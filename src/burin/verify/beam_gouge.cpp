@@ -97,7 +97,7 @@ class Search {
     } else {
       const auto pair = scene_.edges.nearest(s, radius_);
       out.touches = pair.distance <= flat::kRounding;
-      out.inside = out.touches || (side ? *side : scene_.in_part(point_on(s, 0.5)));
+      out.inside = out.touches || (side ? *side : within(point_on(s, 0.5)));
       if (!out.inside) {
         if (pair.distance == kNever) return out;
         out.upper = radius_ - pair.distance;
@@ -117,6 +117,10 @@ class Search {
       }
     }
     return out;
+  }
+
+  bool within(Point2 p) const {
+    return scene_.sides_tell ? in_part(scene_, p, scene_.edges.nearest(p)) : scene_.in_part(p);
   }
 
   /// Away from everything in the tree, by the nearest of a few places.
@@ -318,11 +322,22 @@ class Search {
 
 }  // namespace
 
+bool in_part(const BeamScene& scene, Point2 p, const flat::Tree::Near& near) {
+  const Segment& s = scene.edges.segments()[near.segment];
+  // At a joint of two edges either may be the nearest, and one alone does not say.
+  if (!scene.sides_tell || distance(near.point, s.a) <= flat::kRounding ||
+      distance(near.point, s.b) <= flat::kRounding) {
+    return scene.in_part(p);
+  }
+  if (s.is_line()) return cross(s.b - s.a, p - s.a) > 0;
+  return (distance(p, s.center) < std::abs(s.radius)) == (s.radius > 0);
+}
+
 Depth depth_at(const BeamScene& scene, Point2 p) {
   Depth depth{kNever, {}};
   if (!scene.edges.empty()) {
     const auto near = scene.edges.nearest(p);
-    const double side = scene.in_part(p) ? 1 : -1;
+    const double side = in_part(scene, p, near) ? 1 : -1;
     depth.mm = side * near.distance;
     depth.inwards = near.distance > flat::kRounding
                         ? (side / near.distance) * (p - near.point)

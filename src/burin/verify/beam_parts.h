@@ -12,6 +12,10 @@
 
 namespace burin::verify {
 
+/// Which side of an edge is looked at: above rounding, below what an NC program can say. On the inner side of
+/// an edge the part lies once; more often where outlines overlap or end in tiny loops.
+inline constexpr double kBeside_mm = 1e-6;
+
 /// Everything that both look at.
 struct BeamScene {
   const BeamCheckOptions& options;
@@ -22,7 +26,8 @@ struct BeamScene {
   flat::Tree lines;                                       ///< centre lines
   std::vector<std::uint32_t> edge_outline, line_outline;  ///< of each segment
   bool part_around = false;                               ///< the plane around everything is part
-  double area_from_mm = 0;                                ///< what is less is no area
+  bool sides_tell = false;  ///< the nearest edge says on which side of the outlines a point is
+  double area_from_mm = 0;  ///< what is less is no area
   unsigned threads = 1;
 
   int winding(flat::Point2 p) const { return edges.winding(p) + (part_around ? 1 : 0); }
@@ -36,6 +41,9 @@ struct Depth {
   flat::Vec2 inwards;  ///< where it grows
 };
 Depth depth_at(const BeamScene& scene, flat::Point2 p);
+
+/// As BeamScene::in_part, by the nearest edge where that tells.
+bool in_part(const BeamScene& scene, flat::Point2 p, const flat::Tree::Near& near);
 
 struct GougeResult {
   BeamWorst worst;

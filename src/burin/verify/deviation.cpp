@@ -26,12 +26,12 @@ constexpr std::size_t kTile = 64;
 constexpr std::size_t kTilesAtOnce = 4096;
 // Between the samples so much is left to find, in resolutions.
 constexpr double kGap = 2;
-// Tiles with the worst samples, and steps of the search in one of them, in one of the others, and in all of
+// Tiles with the worst samples, steps of the search in one of them and in one of the others, and in all of
 // those together that need more.
 constexpr std::size_t kFirst = 32;
-constexpr std::size_t kStepsFirst = 200'000;
-constexpr std::size_t kStepsTile = 4'000;
-constexpr std::size_t kStepsLeft = 20'000'000;
+constexpr std::size_t kStepsFirst = 5'000;
+constexpr std::size_t kStepsTile = 1'000;
+constexpr std::size_t kStepsLeft = 5'000'000;
 // A histogram shows so many of the samples within its ends (the rest is in its outermost bins), and is never
 // narrower than this to either side, mm.
 constexpr double kUsual = 0.995;
@@ -189,7 +189,7 @@ class Measure {
     if (!round(head, worst, which, kStepsFirst, stage) || !round(rest, worst, which, kStepsTile, stage))
       return false;
     std::vector<std::size_t> open;
-    for (const std::size_t t : rest)
+    for (const std::size_t t : tiles)
       if (gouge ? tiles_[t].gouge_open : tiles_[t].excess_open) open.push_back(t);
     if (open.empty()) return true;
     return round(open, worst, which, std::max(kStepsTile, kStepsLeft / open.size()), stage);

@@ -49,6 +49,8 @@ struct SampleOptions {
   double least_radius_mm = 3;           ///< of the tools: sets the spacing when nothing else does
   std::size_t max_samples = 5'000'000;  ///< more are an error that says what spacing would do
 };
+/// What sets the spacing when nothing else does.
+double usual_spacing(double least_radius_mm);
 /// Samples on the triangles. `machined[t]` says it for triangle t; empty: all. `normals` (one a vertex,
 /// empty: of the triangles) are blended over each triangle. Errors: a mesh without area, indices that do not
 /// exist, numbers not finite (geometry); more samples than allowed (range), before anything is allocated.

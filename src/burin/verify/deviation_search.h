@@ -3,7 +3,9 @@
 // docs/verify-deviation.md
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "burin/verify/inscribed.h"
@@ -37,21 +39,28 @@ class TileSearch {
 
  private:
   // gouge
-  double depth() const { return worst_.gouge.mm + limits_.gap + limits_.motion; }
+  double depth() const { return std::max(worst_.gouge.mm + limits_.gap + limits_.motion, worst_.gouge_most); }
   double margin(const Patch& patch, double height) const {
     return limits_.motion + std::abs(height) * patch.bulge();
   }
   void gouge(const std::uint32_t* index, std::size_t count, const std::vector<SweptTool::Part>& all);
-  void gouge(const Patch& patch, const Candidate& c, const Span& span, int halvings);
+  struct Sunk;
+  void gouge(const Sunk& sunk, const Candidate& c, const Span& span, int halvings);
   void give_up(const Patch& patch, const Candidate& c, const Span& span);
-  void take(const SampleLine& line);
+  void take(geom::Point3 p, geom::Vec3 n, const Candidate& c);
   // excess
-  double height() const { return worst_.excess.mm + limits_.gap; }
+  double height() const { return std::max(worst_.excess.mm + limits_.gap, worst_.excess_most); }
+  struct Deep;
+  struct Cover;
+  static double bent(const SweptTool& tool, std::array<Deep, 3> deep);
+  Deep deepest(geom::Point3 p, const Moment& near, double enough) const;
+  Cover cover(const Patch& patch, const Moment& at, double height) const;
+  Cover best_cover(const Patch& patch, double height);
+  std::optional<double> look(geom::Point3 p, geom::Vec3 n);
+  void raise_over(const Patch& patch);
   void excess(const Patch& patch, int halvings);
-  bool covered(const Patch& patch, const Moment& at, double height) const;
-  bool covered(const Patch& patch, double height);
+  std::array<Patch, 2> cut(const Patch& patch, const Cover& cover) const;
   void remember(const Moment& at);
-  void give_up(const Patch& patch);
 
   const geom::Mesh& mesh_;
   const SampledSurface& surface_;
@@ -62,7 +71,8 @@ class TileSearch {
   TileWorst worst_;
   std::size_t steps_ = 0;
   bool beside_unmachined_ = false;
-  std::vector<Moment> recent_;  // the last one last
+  std::array<bool, 3> reached_{};  // corners of a patch, by any of the moments
+  std::vector<Moment> recent_;     // the last one last
 };
 
 }  // namespace burin::verify

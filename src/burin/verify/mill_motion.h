@@ -23,13 +23,21 @@ struct Stretch {
   geom::Vec3 turn;    ///< rotation vector of the axis, perpendicular to it
   geom::Vec3 across;  ///< turn's direction x middle.axis
   double angle = 0;
+  static constexpr double kSmall = 4e-4;
 
   static Stretch between(const cl::Pose& a, const cl::Pose& b);
   /// t from 0 to 1.
   Placed at(double t) const {
     const double s = t - 0.5;
     if (angle == 0) return {middle.tip + s * way, middle.axis};
-    return {middle.tip + s * way, std::cos(s * angle) * middle.axis + std::sin(s * angle) * across};
+    const double x = s * angle, xx = x * x;
+    if (xx < kSmall) {
+      // The next terms are below rounding.
+      const double cosine = 1 - xx / 2 * (1 - xx / 12 * (1 - xx / 30)),
+                   sine = x * (1 - xx / 6 * (1 - xx / 20));
+      return {middle.tip + s * way, cosine * middle.axis + sine * across};
+    }
+    return {middle.tip + s * way, std::cos(x) * middle.axis + std::sin(x) * across};
   }
 };
 

@@ -34,16 +34,21 @@ struct Patch {
     const geom::Vec3 a = n[1] - n[0], b = n[2] - n[1], c = n[0] - n[2];
     return std::max({dot(a, a), dot(b, b), dot(c, c)}) / 3;
   }
-  /// Both halves of the longest side, the first one holds its first corner.
+  /// Both parts when side `at` (from corner at to the next) is cut at `share` of it; the first one holds its
+  /// first corner.
+  std::array<Patch, 2> parts(std::size_t at, double share) const {
+    const std::size_t j = (at + 1) % 3, k = (at + 2) % 3;
+    const geom::Point3 m = lerp(p[at], p[j], share);
+    const geom::Vec3 sum = (1 - share) * n[at] + share * n[j];
+    const geom::Vec3 between = norm(sum) > 0 ? unit(sum) : n[at];
+    return {Patch{{p[at], m, p[k]}, {n[at], between, n[k]}}, Patch{{m, p[j], p[k]}, {between, n[j], n[k]}}};
+  }
+  /// Both halves of the longest side.
   std::array<Patch, 2> halves() const {
     std::size_t at = 0;
     for (std::size_t i = 1; i < 3; ++i)
       if (distance(p[i], p[(i + 1) % 3]) > distance(p[at], p[(at + 1) % 3])) at = i;
-    const std::size_t j = (at + 1) % 3, k = (at + 2) % 3;
-    const geom::Point3 m = lerp(p[at], p[j], 0.5);
-    const geom::Vec3 sum = n[at] + n[j];
-    const geom::Vec3 between = norm(sum) > 0 ? unit(sum) : n[at];
-    return {Patch{{p[at], m, p[k]}, {n[at], between, n[k]}}, Patch{{m, p[j], p[k]}, {between, n[j], n[k]}}};
+    return parts(at, 0.5);
   }
 };
 

@@ -125,11 +125,15 @@ double chosen_spacing(const Sampler& sampler, const SampleOptions& options) {
     return widened(sampler, better, std::max(options.max_samples, sampler.triangles()));
   }
   const std::size_t most = std::min(options.max_samples, std::max(kUsualSamples, 2 * sampler.triangles()));
-  const double wanted = std::sqrt(4 * options.least_radius_mm * kBetweenMm);
+  const double wanted = usual_spacing(options.least_radius_mm);
   return widened(sampler, std::max(wanted, 0.8 * sampler.spacing_for(most)), most);
 }
 
 }  // namespace
+
+double usual_spacing(double least_radius_mm) {
+  return std::sqrt(4 * least_radius_mm * kBetweenMm);
+}
 
 Result<SampledSurface> sample_surface(const geom::Mesh& mesh, const std::vector<bool>& machined,
                                       const std::vector<geom::Vec3>& normals, const SampleOptions& options) {
@@ -139,8 +143,8 @@ Result<SampledSurface> sample_surface(const geom::Mesh& mesh, const std::vector<
   if (!(sampler.area() > 0)) return geometry("the mesh has no area");
   const std::size_t most = options.max_samples;
   const auto too_many = [&](const std::string& what) {
-    return range(what + ", more than the " + std::to_string(most) + " allowed (a spacing of " +
-                 format_fixed(widened(sampler, sampler.spacing_for(most), most), 4) + " mm would do)");
+    return range(what + ", more than the " + std::to_string(most) + " allowed (a spacing of about " +
+                 format_fixed(sampler.spacing_for(most / 2 + 1), 4) + " mm would do)");
   };
   if (sampler.triangles() > most)
     return range("the mesh has " + std::to_string(sampler.triangles()) +

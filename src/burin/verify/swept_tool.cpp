@@ -16,8 +16,8 @@ using geom::Vec3;
 constexpr std::uint32_t kLeaf = 4;
 // Newton from outside converges without overshooting, because f is concave; it is quadratic off the edges.
 constexpr int kNewton = 60;
-// Steps towards the moment of a stretch that cuts deepest, and how little (of the resolution) another moment may
-// change it.
+// Steps towards the moment of a stretch that cuts deepest, and how little (of the resolution) another moment
+// may change it.
 constexpr int kSecant = 8;
 constexpr double kFlat = 0.25;
 
@@ -32,7 +32,11 @@ SweptTool::SweptTool(std::vector<MillBody> bodies, std::vector<Stretch> stretche
   nodes_.emplace_back();
   split(0, 0, static_cast<std::uint32_t>(stretches.size()), stretches);
   stretches_.reserve(stretches.size());
-  for (const std::uint32_t i : order_) stretches_.push_back(stretches[i]);
+  position_.resize(order_.size());
+  for (const std::uint32_t i : order_) {
+    position_[i] = static_cast<std::uint32_t>(stretches_.size());
+    stretches_.push_back(stretches[i]);
+  }
 }
 
 void SweptTool::lay(Node& node, std::uint32_t begin, std::uint32_t end,
@@ -121,8 +125,7 @@ double SweptTool::upper(const SampleLine& line, std::uint32_t body, std::uint32_
 void SweptTool::descend(SampleLine& line, std::uint32_t body, std::uint32_t index) const {
   const Node& node = nodes_[index];
   if (node.count > 0) {
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      lower(line, candidate(i, body));
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) lower(line, candidate(i, body));
     return;
   }
   const double a = upper(line, body, node.first), b = upper(line, body, node.first + 1);
@@ -196,8 +199,8 @@ class SweptTool::Crossing {
     const double share = two / (two - one);
     return !outside(share * b.sides[0].f + (1 - share) * b.sides[1].f, share * bottom + (1 - share) * side);
   }
-  /// Below the surface both the sample and the height asked for must be inside at once, above it any place from
-  /// the sample up to that height.
+  /// Below the surface both the sample and the height asked for must be inside at once, above it any place
+  /// from the sample up to that height.
   bool possible(const Times& times) const {
     return may_hold(times, top_, std::max(0.0, top_)) && (top_ >= 0 || may_hold(times, 0, 0));
   }
@@ -208,8 +211,9 @@ class SweptTool::Crossing {
     const BodyAt b = at_height(at, best_);
     return dot(b.sides[b.least].gradient, motion(line_.q + best_ * line_.n - at.tip));
   }
-  /// When the best height is deepest in the tool (it is concave in time but for the turning): a secant between
-  /// times at which it rises and falls, the older one's rate halved when it stays (or it would creep).
+  /// When the best height is deepest in the tool (it is concave in time but for the turning): a secant
+  /// between times at which it rises and falls, the older one's rate halved when it stays (or it would
+  /// creep).
   double best_time() {
     double a = 0.5, rate_a = along(a), b = rate_a > 0 ? 1 : 0, rate_b = along(b);
     enter({0, 1, a, stretch_.middle});
@@ -232,8 +236,9 @@ class SweptTool::Crossing {
     return t;
   }
 
-  /// Lowers the best by where the line enters at time t. f is concave along it, so that tangents lead there from
-  /// below. When it does not enter, tangents say how far it is from that: true when that proves the times.
+  /// Lowers the best by where the line enters at time t. f is concave along it, so that tangents lead there
+  /// from below. When it does not enter, tangents say how far it is from that: true when that proves the
+  /// times.
   bool enter(const Times& times) {
     const BodyAt there = at_height(times.at, 0);
     double h = 0;

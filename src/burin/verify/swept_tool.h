@@ -29,7 +29,7 @@ struct SampleLine {
   double reach = 0;       ///< looked at from -reach to reach
   double resolution = 0;  ///< what may be left to find
   double best = 0;        ///< begins as reach
-  Moment at{};  ///< when that is; none: nowhere up to reach
+  Moment at{};            ///< when that is; none: nowhere up to reach
 
   bool found() const { return at.found(); }
   /// As if every piece were so much larger all around: what is touched to a rounding error counts as inside.
@@ -54,6 +54,10 @@ class SweptTool {
   const MillBody& body(std::size_t i) const { return bodies_[i]; }
   /// Position in the list given of the stretch that a line or a candidate names.
   std::uint32_t original(std::uint32_t stretch) const { return order_[stretch]; }
+  /// And back.
+  std::uint32_t position(std::uint32_t original) const { return position_[original]; }
+  std::uint32_t size() const { return static_cast<std::uint32_t>(stretches_.size()); }
+  const Stretch& stretch(std::uint32_t i) const { return stretches_[i]; }
   Candidate candidate(std::uint32_t stretch, std::uint32_t body) const;
 
   /// A part of the index for one of the bodies.
@@ -64,8 +68,8 @@ class SweptTool {
   void add_all(std::vector<Part>& parts) const {
     for (std::uint32_t b = 0; b < bodies_.size() && !nodes_.empty(); ++b) parts.push_back({number_, b, 0});
   }
-  /// Adds to `parts` what of the part may come into both extents, or nearer than `margin`: divided until each is
-  /// no larger than the extents or one leaf.
+  /// Adds to `parts` what of the part may come into both extents, or nearer than `margin`: divided until each
+  /// is no larger than the extents or one leaf.
   template <class Extent>
   void narrow(const Part& part, const Extent& one, const Extent& other, double margin,
               std::vector<Part>& parts) const {
@@ -145,7 +149,7 @@ class SweptTool {
 
   std::vector<MillBody> bodies_;
   std::vector<Stretch> stretches_;  // in the order of the tree
-  std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> order_, position_;
   std::vector<Node> nodes_;
   std::uint32_t number_ = 0;
 };

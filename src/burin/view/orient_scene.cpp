@@ -9,7 +9,7 @@
 #include "burin/base/text.h"
 #include "burin/job/orient_check.h"
 #include "burin/view/mesh_shape.h"
-#include "burin/view/path_scene.h"
+#include "burin/view/plan_scene.h"
 #include "burin/view/verify_scene.h"
 
 namespace burin::view {
@@ -18,11 +18,10 @@ namespace {
 using orient::OrientedPoint;
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 constexpr std::size_t kTriangles = 10'000'000;  ///< scene_bytes thins to what a page holds
 /// Nodes of all maps together: with their radii about three bytes each.
 constexpr std::size_t kMapNodes = 700'000;
-constexpr std::size_t kPathRows = 500, kMostGroups = 65'000;
+constexpr std::size_t kPathRows = 500;
 /// Share of the tool's radius below which an initial solution (yaw 90 degrees) has none to compare with.
 constexpr double kNoRadius = 1e-6;
 
@@ -64,62 +63,24 @@ class Maker {
   // --- the path
 
   Result<void> path() {
-    PathView view;
-    view.program = in_.program;
-    view.machine = in_.machine;
-    view.lines = lines_of_records(in_.nc_line_to_record, in_.program->records.size());
-    if (auto ok = put_path(view, scene_); !ok) return ok;
-    scene_.tools = {scene_tool(job::checked_mill(*in_.mill), 0)};
-    std::fill(scene_.path.tool.begin(), scene_.path.tool.end(), std::uint8_t{0});
-    sources();
-    groups();
+    auto nodes = put_plan_path(*in_.program, in_.machine, in_.nc_line_to_record,
+                               scene_tool(job::checked_mill(*in_.mill), 0), points_.size(), scene_);
+    if (!nodes) return nodes.error();
+    nodes_ = *std::move(nodes);
+    std::vector<std::string> names;
+    for (const orient::OrientedPath& p : plan_.paths)
+      names.push_back("path " + std::to_string(p.number) +
+                      (p.face >= 0 ? ", face " + std::to_string(p.face) : ""));
+    put_plan_groups(
+        nodes_, std::move(names), [this](std::size_t i) { return points_[i].path; }, scene_);
     return {};
-  }
-
-  /// The point over all paths of each node, kNone in the air: such moves are links.
-  void sources() {
-    std::vector<std::uint32_t> of_move;
-    for (std::size_t r = 0; r < in_.program->records.size(); ++r)
-      if (cl::is_motion(in_.program->records[r])) of_move.push_back(in_.program->source[r]);
-    ScenePath& path = scene_.path;
-    for (std::size_t n = 0; n < path.point.size(); ++n) {
-      const std::uint32_t source = of_move[path.move[n]];
-      const bool cuts = source != cl::Program::kNoSource && source < points_.size();
-      point_of_.push_back(cuts ? source : kNone);
-      if (!cuts && path.kind[n] == WayKind::feed) path.kind[n] = WayKind::link;
-    }
-    // The first node of a run is reached through the air, and is a contact point all the same.
-    node_of_.assign(points_.size(), kNone);
-    for (std::size_t n = 0; n < point_of_.size(); ++n)
-      if (point_of_[n] != kNone) node_of_[point_of_[n]] = n;
-  }
-
-  void groups() {
-    scene_.groups.clear();
-    for (const orient::OrientedPath& p : plan_.paths) {
-      if (scene_.groups.size() >= kMostGroups) break;
-      scene_.groups.push_back("path " + std::to_string(p.number) +
-                              (p.face >= 0 ? ", face " + std::to_string(p.face) : ""));
-    }
-    if (scene_.groups.empty()) scene_.groups.push_back("path");
-    // Ways through the air belong to the path they lead to.
-    std::size_t group = 0;
-    for (std::size_t n = point_of_.size(); n-- > 0;) {
-      if (point_of_[n] != kNone) group = std::min(points_[point_of_[n]].path, scene_.groups.size() - 1);
-      scene_.path.group[n] = static_cast<std::uint16_t>(group);
-    }
   }
 
   template <class Value>
   void add(const char* name, const char* unit, bool diverges, const Value& value) {
-    SceneSeries s{name, unit, std::vector<float>(point_of_.size(), kNaN), diverges};
-    for (std::size_t n = 0; n < point_of_.size(); ++n) {
-      if (point_of_[n] == kNone) continue;
-      const Place& p = points_[point_of_[n]];
-      const auto v = static_cast<float>(value(plan_.paths[p.path].points[p.point]));
-      if (std::isfinite(v)) s.value[n] = v;
-    }
-    scene_.series.push_back(std::move(s));
+    put_plan_series(
+        nodes_, name, unit, diverges,
+        [&](std::size_t i) { return value(plan_.paths[points_[i].path].points[points_[i].point]); }, scene_);
   }
   bool has_gain(const OrientedPoint& p) const {
     return p.initial_found && p.rho_initial >= kNoRadius * in_.mill->radius && std::isfinite(p.rho_initial) &&
@@ -133,8 +94,8 @@ class Maker {
         [this](const OrientedPoint& p) { return has_gain(p) ? 100 * (p.rho / p.rho_initial - 1) : NAN; });
     add("tilt", "deg", false, [](const OrientedPoint& p) { return geom::degrees(p.angles.alpha); });
     add("yaw", "deg", true, [](const OrientedPoint& p) { return geom::degrees(p.angles.beta); });
-    add("strip", "mm", false, [](const OrientedPoint& p) { return p.strip.left + p.strip.right; });
-    add("feasibility tests", "", false, [](const OrientedPoint& p) { return double(p.tests); });
+    add("strip", "mm", false, [](const OrientedPoint& p) { return p.strip.width(); });
+    add("feasibility tests", "", false, [](const OrientedPoint& p) { return static_cast<double>(p.tests); });
   }
 
   // --- C-spaces
@@ -154,8 +115,8 @@ class Maker {
     for (std::size_t k = 0; k < in_.maps.size(); k += every) {
       const auto& m = in_.maps[k];
       if (!sound(m)) continue;
-      const std::size_t node = node_of_[first[m.path] + m.point];
-      if (node != kNone) scene_.cspaces.push_back(cspace(m, static_cast<std::uint32_t>(node)));
+      const std::size_t node = nodes_.node_of[first[m.path] + m.point];
+      if (node != kNoPoint) scene_.cspaces.push_back(cspace(m, static_cast<std::uint32_t>(node)));
     }
   }
   SceneCSpace cspace(const OrientPicture::PointMap& m, std::uint32_t node) const {
@@ -213,8 +174,7 @@ class Maker {
   const orient::OrientPlan& plan_;
   Scene scene_;
   std::vector<Place> points_;
-  std::vector<std::size_t> point_of_;  ///< of a node
-  std::vector<std::size_t> node_of_;   ///< of a point
+  PlanNodes nodes_;
 };
 
 }  // namespace

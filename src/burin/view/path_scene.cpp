@@ -41,7 +41,6 @@ class PathMaker {
       return Error{ErrorCode::internal, "scene: one set of joints of a machine is needed for each move", {}};
     find_beam();
     with_rotary_ = view_.machine && view_.machine->rotary_count() > 0;
-    if (program_.from) begin(*program_.from);
     for (record_ = 0; record_ < program_.records.size(); ++record_) {
       const cl::Record& record = program_.records[record_];
       if (!cl::is_motion(record)) {
@@ -155,8 +154,6 @@ class PathMaker {
 
   /// FROM/, or the end of the first motion when nobody says where it begins.
   void begin(const cl::Pose& pose) {
-    enter_group();
-    ready_tool();
     at_ = pose;
     joints_at_ = joints_for(pose, nullptr);
     node(pose, joints_at_.rotary, WayKind::rapid);
@@ -190,6 +187,8 @@ class PathMaker {
     const cl::Pose& to = *cl::pose_of(record);
     enter_group();
     ready_tool();
+    // With the tool and in the group of the first motion.
+    if (!at_ && program_.from) begin(*program_.from);
     const kinematics::Joints* given = view_.joints ? &(*view_.joints)[move_] : nullptr;
     if (!at_) {
       begin(given ? view_.machine->forward(*given) : to);

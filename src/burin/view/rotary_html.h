@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "burin/base/diagnostics.h"
+#include "burin/cl/program.h"
+#include "burin/kinematics/kinematics.h"
 #include "burin/model/tool.h"
 #include "burin/plan/rotary/rotary.h"
 
@@ -23,6 +25,11 @@ struct RotaryPicture {
   };
   std::vector<Figure> figures;
   std::string nc_text;
+  // For the viewer (rotary_scene): the program with the number of the point as source, as rotary::to_cl makes
+  // it, its machine, and the NC lines of its records.
+  const cl::Program* program = nullptr;
+  const kinematics::Kinematics* machine = nullptr;
+  std::vector<std::uint32_t> nc_line_to_record;
 };
 
 /// Part, tool path and axes in space; sections with the initial axes (those that interfere marked) and the

@@ -74,10 +74,10 @@ function overDesign(c: Cut): { most: number; least: number } | null {
 function say(out: HTMLElement, c: Cut): void {
   const own = c.bodies[c.own], place = own.outermost(0, -1)[0], of = c.ridges.filter(r => r.left === c.own || r.right === c.own);
   const left = of.filter(r => r.right === c.own).pop(), right = of.find(r => r.left === c.own), over = overDesign(c), rows: [string, string][] = [];
-  const steps = c.bodies.filter((_, k) => k !== c.own).map(b => b.outermost(0, -1)[0] - place), before = Math.max(...steps.filter(d => d < -1e-4), -Infinity), after = Math.min(...steps.filter(d => d > 1e-4), Infinity);
+  const apart = (k: number | undefined) => k === undefined ? "-" : fixed(Math.abs(c.bodies[k].outermost(0, -1)[0] - place), 3);
   rows.push(["scallop on the left, right", `${left ? small(left.height) : "-"}, ${right ? small(right.height) : "-"}`]);
   if (c.ridges.length > 0) rows.push(["highest scallop here", small(Math.max(...c.ridges.map(r => r.height)))]);
-  rows.push(["next passes, left and right", `${Number.isFinite(before) ? fixed(-before, 3) : "-"}, ${Number.isFinite(after) ? fixed(after, 3) : "-"} mm`]);
+  rows.push(["next passes, left and right", `${apart(left?.left)}, ${apart(right?.right)} mm`]);
   if (over) rows.push(["left over the design", `${small(over.least)} to ${small(over.most)}`]);
   out.replaceChildren(el("table", {}, el("tbody", {}, ...rows.map(([a, b]) => el("tr", {}, el("td", {}, a), el("td", {}, b))))));
 }

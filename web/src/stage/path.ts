@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path: one chain of ways whose colours change without the rest; what lies ahead of the time is told apart in the shader,
 // so that playing changes one number only. Under a beam the band that it takes away, true to scale.
-import { Color, GLSL3, Group, type Mesh, NotEqualStencilFunc, ReplaceStencilOp, ShaderMaterial, type Vector3 } from "three";
+import { Color, GLSL3, Group, type Line, type Matrix4, type Mesh, NotEqualStencilFunc, ReplaceStencilOp, ShaderMaterial, type Vector3 } from "three";
 import { colouring, type Rgb } from "../colours";
 import { Kind, type Path } from "../scene";
 import type { Context } from "./context";
 import { CLIP_FRAGMENT, CLIP_VERTEX } from "./materials";
-import { Chain, FETCH, Look, ribbonMaterial } from "./ribbon";
+import { Chain, FETCH, Look, ribbonMaterial, thread } from "./ribbon";
 
 // The band that a beam takes away, true to scale, flat in z. Where bands overlap only the first is painted (stencil).
 const BAND_VERTEX = `
@@ -44,6 +44,8 @@ const LEAST_WIDTH = 0.9, LEAST_OPACITY = 0.4, OVER_HEAT = 0.6;
 export class PathLines {
   readonly group = new Group();
   private chain: Chain;
+  private ribbon: Mesh;
+  private thread: Line;
   private material: ShaderMaterial;
   private bands: { mesh: Mesh; kerf: number; colour: Color } | null = null;
   private hover: Mark;
@@ -51,13 +53,16 @@ export class PathLines {
   private moving = { value: 0 };
   private ahead = { value: 1 };
   private spacing: number; // mm, about
+  private only: number | null = null;
 
   constructor(private ctx: Context, size: Vector3) {
     const sides = [size.x, size.y, size.z].sort((a, b) => b - a);
     this.spacing = sides[0]! * Math.max(sides[1]!, 0.1 * sides[0]!) / Math.max(cutLength(ctx.scene.path), 1e-6);
     this.chain = new Chain(ctx.scene.path.point);
     this.material = ribbonMaterial(ctx, this.chain, { width: WIDTH, nearer: NEARER, now: this.moving, ahead: this.ahead, faded: FADED, lit: true });
-    this.group.add(this.chain.object(this.material, 3));
+    this.ribbon = this.chain.object([this.material], 3);
+    this.thread = thread(ctx, this.chain, this.material, 3);
+    this.group.add(this.ribbon, this.thread);
     const kerf = Math.max(0, ...ctx.scene.tools.map(t => t.kerf));
     if (kerf > 0) this.addBands(kerf);
     this.hover = new Mark(ctx, HOVER_WIDTH, 0.6);
@@ -72,7 +77,7 @@ export class PathLines {
     const material = new ShaderMaterial({ glslVersion: GLSL3, vertexShader: BAND_VERTEX, fragmentShader: BAND_FRAGMENT, transparent: true, depthWrite: false,
       stencilWrite: true, stencilRef: 1, stencilFunc: NotEqualStencilFunc, stencilZPass: ReplaceStencilOp,
       uniforms: { points: { value: this.chain.points }, tints: { value: this.chain.tints }, clip: shared.clip, clipOn: shared.clipOn, now: this.moving, kerf: { value: kerf }, ahead: this.ahead, colour: { value: colour } } });
-    const mesh = this.chain.object(material, 2);
+    const mesh = this.chain.object([material], 2);
     this.bands = { mesh, kerf, colour };
     this.group.add(mesh);
   }
@@ -91,6 +96,7 @@ export class PathLines {
       chain.paint(i, c[0], c[1], c[2], kind | (state.only !== null && path.group[i] !== state.only ? Look.hidden : 0));
     }
     chain.painted();
+    if (state.only !== this.only) { this.only = state.only; chain.forget(); }
     this.bands?.colour.set(theme.dark ? "#ff9d5c" : "#e8590c");
     this.hover.colour(theme.accent); this.picked.colour(theme.hit);
   }
@@ -102,8 +108,14 @@ export class PathLines {
     // Before anything happened all of it is seen.
     this.moving.value = time === 0 && !playing && show.ahead ? 1e9 : waysDone(this.ctx);
   }
-  /** `pixel`: mm. Lines that lie close get thin and let the part through; the bands are painted when one is seen. */
-  zoomed(pixel: number): void {
+  /** Of the camera: `pixel` mm, `matrix` to clip space, `most` ways that may be ribbons. Lines that lie close get thin and
+   *  let the part through; the bands are painted when one is seen. */
+  zoomed(pixel: number, matrix: Matrix4, most: number): void {
+    if (this.chain.point.length > 3) {
+      const few = this.chain.cull(matrix) <= most;
+      this.ribbon.visible = few; this.thread.visible = !few;
+      if (!few) this.thread.geometry.setIndex(this.chain.thinned(pixel / this.ctx.shared.pixel.value));
+    }
     if (this.bands) this.bands.mesh.visible = this.bands.kerf > 1.2 * pixel;
     const { heat, show } = this.ctx.store.state, fits = COVER * this.spacing / pixel, part = show.part && this.ctx.scene.meshes.length > 0;
     this.material.uniforms["width"]!.value = Math.min(WIDTH, Math.max(LEAST_WIDTH, fits));

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many lines of even width in one draw: points and colours lie in textures, a vertex knows by its number which way and which
 // corner it is. (Instances of four vertices are slow on many devices, and a buffer of corners would be four times as large.)
-import { BufferAttribute, BufferGeometry, DataTexture, FloatType, GLSL3, Mesh, NearestFilter, RGBAFormat, type ShaderMaterial, ShaderMaterial as Material, UnsignedByteType } from "three";
+import { Box3, BufferAttribute, BufferGeometry, DataTexture, FloatType, Frustum, GLSL3, Line, type Matrix4, Mesh, NearestFilter, RGBAFormat, type ShaderMaterial, ShaderMaterial as Material, UnsignedByteType, Vector3 } from "three";
 import type { Context } from "./context";
 import { CLIP_FRAGMENT, CLIP_VERTEX } from "./materials";
 
 const TEXELS = 2048; // a row
+const PIECE = 512; // ways that are left out together
+const LONGEST = 4, NEAR = 0.3, MOST_SKIPPED = 64; // pixels, nodes: of a thread's chords
+const LEVELS = 4; // kept
 
 /** What a way looks like; as path.kind where it is one. */
 export const Look = { dashed: 0, plain: 1, thin: 4, hidden: 128 } as const;
@@ -67,9 +70,13 @@ export class Chain {
   readonly points: DataTexture;
   readonly tints: DataTexture;
   readonly geometry = new BufferGeometry();
+  readonly flat: BufferAttribute; // the same colours, for threads
+  private boxes: Box3[] = []; // of PIECE ways each
+  private levels = new Map<number, BufferAttribute>(); // by the logarithm of a pixel's size
   constructor(readonly point: Float32Array) {
     const n = point.length / 3, rows = Math.max(1, Math.ceil(n / TEXELS)), place = new Float32Array(4 * rows * TEXELS), ways = Math.max(0, n - 1);
     this.tint = new Uint8Array(4 * rows * TEXELS);
+    this.flat = new BufferAttribute(this.tint.subarray(0, 4 * n), 4, true);
     this.points = texture(place, rows, FloatType);
     this.tints = texture(this.tint, rows, UnsignedByteType);
     this.set(point);
@@ -87,18 +94,92 @@ export class Chain {
     const t = this.tint, k = 4 * node;
     t[k] = 255 * r + 0.5; t[k + 1] = 255 * g + 0.5; t[k + 2] = 255 * b + 0.5; t[k + 3] = look;
   }
-  painted(): void { this.tints.needsUpdate = true; }
-  object(material: ShaderMaterial, order: number): Mesh {
+  painted(): void { this.tints.needsUpdate = true; this.flat.needsUpdate = true; }
+  /** After looks changed. */
+  forget(): void { this.levels.clear(); }
+  /** Nodes enough for lines of one pixel where a pixel is `size` mm: ends of looks stay, others are left out while the chord
+   *  is shorter than LONGEST pixels and passes each of them within NEAR pixels. */
+  thinned(size: number): BufferAttribute {
+    const level = Math.floor(Math.log2(size)), kept = this.levels.get(level);
+    if (kept) return kept;
+    const n = this.point.length / 3, p = this.point, t = this.tint, far = (LONGEST * 2 ** level) ** 2, near = (NEAR * 2 ** level) ** 2, out = new Uint32Array(n);
+    let made = n > 0 ? 1 : 0, from = 0;
+    for (let i = 1; i < n; ++i) {
+      // Whether the chord from `from` may go on to i + 1.
+      const last = i + 1 === n || t[4 * i + 3] !== t[4 * i + 7] || i - from >= MOST_SKIPPED;
+      let skip = false;
+      if (!last) {
+        const ax = p[3 * from]!, ay = p[3 * from + 1]!, az = p[3 * from + 2]!, dx = p[3 * i + 3]! - ax, dy = p[3 * i + 4]! - ay, dz = p[3 * i + 5]! - az, dd = dx * dx + dy * dy + dz * dz;
+        skip = dd <= far;
+        for (let k = from + 1; skip && k <= i; ++k) {
+          const x = p[3 * k]! - ax, y = p[3 * k + 1]! - ay, z = p[3 * k + 2]! - az, s = dd > 0 ? Math.min(1, Math.max(0, (x * dx + y * dy + z * dz) / dd)) : 0;
+          skip = (x - s * dx) ** 2 + (y - s * dy) ** 2 + (z - s * dz) ** 2 <= near;
+        }
+      }
+      if (!skip) { out[made++] = i; from = i; }
+    }
+    const index = new BufferAttribute(out.slice(0, made), 1);
+    if (this.levels.size >= LEVELS) this.levels.delete(this.levels.keys().next().value!);
+    this.levels.set(level, index);
+    return index;
+  }
+  /** Leaves out what `matrix` (to clip space) puts beside the screen. How many ways are left. For objects with materials in a list. */
+  cull(matrix: Matrix4): number {
+    const ways = Math.max(0, this.point.length / 3 - 1), { geometry } = this;
+    if (this.boxes.length === 0) for (let i = 0; i < ways; i += PIECE) {
+      const box = new Box3();
+      for (let k = i; k <= Math.min(ways, i + PIECE); ++k) box.expandByPoint(corner.fromArray(this.point, 3 * k));
+      this.boxes.push(box.expandByScalar(1e-6));
+    }
+    frustum.setFromProjectionMatrix(matrix);
+    geometry.clearGroups();
+    let from = -1, seen = 0;
+    for (let b = 0; b <= this.boxes.length; ++b) {
+      const on = b < this.boxes.length && frustum.intersectsBox(this.boxes[b]!);
+      if (on) { if (from < 0) from = b; seen += Math.min(ways, (b + 1) * PIECE) - b * PIECE; }
+      else if (from >= 0) { geometry.addGroup(6 * from * PIECE, 6 * (Math.min(ways, b * PIECE) - from * PIECE), 0); from = -1; }
+    }
+    return seen;
+  }
+  object(material: ShaderMaterial | ShaderMaterial[], order: number): Mesh {
     const m = new Mesh(this.geometry, material);
     m.frustumCulled = false; m.renderOrder = order;
     m.visible = this.point.length > 3;
     return m;
   }
 }
+const frustum = new Frustum(), corner = new Vector3();
 function texture(data: Float32Array | Uint8Array, rows: number, type: typeof FloatType | typeof UnsignedByteType): DataTexture {
   const t = new DataTexture(data, TEXELS, rows, RGBAFormat, type);
   t.minFilter = t.magFilter = NearestFilter;
   return t;
+}
+
+const THREAD_VERTEX = `
+in vec4 tint;
+uniform float nearer, lit; out float vAt; flat out vec3 vTint; flat out float vLook; ${CLIP_VERTEX}
+void main() {
+  vLook = floor(tint.a * 255.0 + 0.5); vTint = tint.rgb; vAt = float(gl_VertexID); vPart = position;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  gl_Position.z -= nearer * gl_Position.w;
+}`;
+const THREAD_FRAGMENT = `
+uniform float now, ahead, faded, opacity, rapids, pixel; ${CLIP_FRAGMENT}
+in float vAt; flat in vec3 vTint; flat in float vLook; out vec4 result;
+void main() {
+  cut();
+  float later = step(now, vAt);
+  if (vLook > 127.5 || (vLook < 0.5 && (rapids < 0.5 || mod(gl_FragCoord.x + gl_FragCoord.y, 9.0 * pixel) > 5.0 * pixel)) || later * (1.0 - ahead) > 0.5) discard;
+  result = vec4(vTint, opacity * mix(1.0, vLook < 0.5 ? 0.25 : faded, later));
+}`;
+/** The same chain as lines of one pixel: an eighth of the work, for so many ways that no more can be told apart. */
+export function thread(ctx: Context, chain: Chain, ribbon: ShaderMaterial, order: number): Line {
+  const g = new BufferGeometry(), n = chain.point.length / 3;
+  g.setAttribute("position", new BufferAttribute(chain.point, 3));
+  g.setAttribute("tint", chain.flat);
+  const line = new Line(g, new Material({ glslVersion: GLSL3, vertexShader: THREAD_VERTEX, fragmentShader: THREAD_FRAGMENT, transparent: true, uniforms: { ...ribbon.uniforms, pixel: ctx.shared.pixel } }));
+  line.frustumCulled = false; line.renderOrder = order; line.visible = n > 1;
+  return line;
 }
 
 export interface RibbonOptions { width: number; nearer: number; opacity?: number; onTop?: boolean; smooth?: boolean; lit?: boolean; now?: { value: number }; ahead?: { value: number }; faded?: number }

@@ -75,7 +75,7 @@ export class StockView {
     this.worker = null;
     this.mesher = new StockMesher(this.clock());
     this.busy = false; this.asked = "";
-    this.update();
+    this.ctx.invalidate();
   }
   update(): void {
     const { scene, store } = this.ctx, clock = scene.stock;
@@ -94,8 +94,7 @@ export class StockView {
     for (const b of bricks) this.put(b);
     this.milliseconds = performance.now() - this.started;
     this.busy = false;
-    this.ctx.invalidate();
-    this.update();
+    this.ctx.invalidate(); // the frame asks for what the time has become meanwhile
   }
   private put(b: BrickMesh): void {
     const old = this.bricks.get(b.brick);

@@ -36,8 +36,9 @@ class ProfileMaker {
 
   Result<Profile> run() {
     if (auto ok = make_outlines(); !ok) return ok.error();
-    leave_out_crossing();
-    nest();
+    // What is left out below still says what is a hole.
+    const std::vector<std::uint32_t> parents = nest();
+    leave_out_crossing(parents);
     if (offset_mm() != 0) {
       if (auto ok = refit_for_offset(); !ok) return ok.error();
     }
@@ -88,10 +89,10 @@ class ProfileMaker {
     return {};
   }
 
-  void leave_out_crossing() {
+  void leave_out_crossing(const std::vector<std::uint32_t>& parents) {
     std::vector<ArcSpline> closed(profile_.outlines.size());
     for (std::size_t i = 0; i < closed.size(); ++i) {
-      if (profile_.outlines[i].role == Role::outer) closed[i] = profile_.outlines[i].spline;
+      if (is_closed_cut(profile_.outlines[i])) closed[i] = profile_.outlines[i].spline;
     }
     const double tolerance = options_.tolerance.path_mm, point = options_.tolerance.point_mm;
     const auto found = detail::find_crossings(closed, tolerance, point);
@@ -116,7 +117,10 @@ class ProfileMaker {
     }
     std::vector<Outline> kept;
     for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
-      if (out.count(i) == 0) kept.push_back(std::move(profile_.outlines[i]));
+      if (out.count(i) != 0) continue;
+      if (profile_.outlines[i].role == Role::hole && out.count(parents[i]) != 0)
+        orphans_.insert(profile_.outlines[i].contour);
+      kept.push_back(std::move(profile_.outlines[i]));
     }
     profile_.outlines = std::move(kept);
   }
@@ -145,7 +149,8 @@ class ProfileMaker {
     }
   }
 
-  void nest() {
+  /// The parent of each outline.
+  std::vector<std::uint32_t> nest() {
     std::vector<CutPath> as_paths;
     as_paths.reserve(profile_.outlines.size());
     for (const Outline& o : profile_.outlines) as_paths.push_back({o.spline, o.role, 0, o.contour});
@@ -155,6 +160,7 @@ class ProfileMaker {
       for (std::uint32_t p = parents[i]; p != detail::kNoParent; p = parents[p]) ++o.depth;
       if (o.role == Role::outer && o.depth % 2 == 1) o.role = Role::hole;
     }
+    return parents;
   }
 
   bool is_closed_cut(const Outline& o) const { return o.role == Role::outer || o.role == Role::hole; }
@@ -210,13 +216,18 @@ class ProfileMaker {
     if (options_.side == Side::automatic) {
       std::vector<std::uint32_t> all;
       for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
-        if (is_closed_cut(profile_.outlines[i])) all.push_back(i);
+        if (!is_closed_cut(profile_.outlines[i])) continue;
+        if (orphans_.count(profile_.outlines[i].contour) == 0) {
+          all.push_back(i);
+        } else if (auto ok = offset_group({i}, false); !ok) {
+          return ok.error();
+        }
       }
-      if (auto ok = offset_group(all); !ok) return ok.error();
+      if (auto ok = offset_group(all, true); !ok) return ok.error();
     } else {
       for (std::uint32_t i = 0; i < profile_.outlines.size(); ++i) {
         if (!is_closed_cut(profile_.outlines[i])) continue;
-        if (auto ok = offset_group({i}); !ok) return ok.error();
+        if (auto ok = offset_group({i}, false); !ok) return ok.error();
       }
     }
     for (const Outline& o : profile_.outlines) {
@@ -228,10 +239,10 @@ class ProfileMaker {
     return {};
   }
 
-  /// Offsets the outlines `group` together: as one region by nesting, or a single one to the side asked for.
-  Result<void> offset_group(const std::vector<std::uint32_t>& group) {
+  /// Offsets the outlines `group` together: as one region by nesting, or a single one to the side asked for
+  /// (a hole without the contour around it: inside).
+  Result<void> offset_group(const std::vector<std::uint32_t>& group, bool by_nesting) {
     if (group.empty()) return {};
-    const bool by_nesting = options_.side == Side::automatic;
     double d = offset_mm();
     std::vector<ArcSpline> region;
     for (const std::uint32_t i : group) {
@@ -459,6 +470,7 @@ class ProfileMaker {
   Profile profile_;
   std::vector<std::uint32_t> piece_contour_;
   std::set<std::uint32_t> repaired_;  ///< contours with shallow crossings
+  std::set<std::uint32_t> orphans_;   ///< contours: holes in what was left out
 };
 
 }  // namespace

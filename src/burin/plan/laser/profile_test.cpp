@@ -296,6 +296,22 @@ TEST(Crossings, DeepOnesAreLeftOutWithTheirPosition) {
   EXPECT_EQ(as_drawn->paths.size(), 3u);
 }
 
+TEST(Crossings, HolesInWhatIsLeftOutStayHoles) {
+  Sketch s;
+  s.rectangle(0, 0, 40, 30).rectangle(35, 5, 50, 15).circle({10, 10}, 3).circle({20, 20}, 5);
+  s.circle({20, 20}, 2).rectangle(60, 0, 80, 20).circle({70, 10}, 4);
+  const Made m = make(s, offset_by(0.2));
+  REQUIRE_PROFILE(m);
+  ASSERT_EQ(m->paths.size(), 5u) << listed(m.notes);
+  EXPECT_NEAR(std::abs(m.area(0)), kPi * 2.8 * 2.8, 1e-6);
+  EXPECT_NEAR(std::abs(m.area(1)), kPi * 4.8 * 4.8, 1e-6);
+  EXPECT_NEAR(std::abs(m.area(2)), kPi * 2.2 * 2.2, 1e-6);  // the disk in the hole
+  EXPECT_NEAR(std::abs(m.area(3)), grown_square(20, 0.2), 1e-6);
+  EXPECT_NEAR(std::abs(m.area(4)), kPi * 3.8 * 3.8, 1e-6);
+  EXPECT_EQ(m->paths[0].role, Role::hole);
+  EXPECT_EQ(m->paths[2].role, Role::outer);
+}
+
 TEST(Crossings, FigureEight) {
   const std::vector<Point2> eight{{0, 0}, {10, 10}, {10, 0}, {0, 10}};
   for (std::size_t k = 0; k < 4; ++k) {
