@@ -192,7 +192,8 @@ class Measure {
     for (const std::size_t t : tiles)
       if (gouge ? tiles_[t].gouge_open : tiles_[t].excess_open) open.push_back(t);
     if (open.empty() || open.size() * kStepsTile > kStepsLeft) return true;
-    return round(open, worst, which, std::max(kStepsTile, std::min(kStepsFirst, kStepsLeft / open.size())), stage);
+    return round(open, worst, which, std::max(kStepsTile, std::min(kStepsFirst, kStepsLeft / open.size())),
+                 stage);
   }
   bool round(const std::vector<std::size_t>& tiles, TileWorst& worst, WorstDeviation TileWorst::*which,
              std::size_t steps, std::string_view stage) {

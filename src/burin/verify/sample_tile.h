@@ -121,8 +121,7 @@ class Tile {
     const BoxExtent extent = around(which, count);
     const double touch = lines_.front().touch();
     std::vector<SweptTool::Part> some;
-    for (const SweptTool::Part& part : all)
-      swept_.tools[part.tool].narrow(part, extent, extent, touch, some);
+    for (const SweptTool::Part& part : all) swept_.tools[part.tool].narrow(part, extent, extent, touch, some);
     if (count <= kGroup) {
       for (std::size_t i = 0; i < count; ++i)
         for (const SweptTool::Part& part : some) swept_.tools[part.tool].lower(lines_[which[i]], part);
