@@ -29,9 +29,9 @@ constexpr double kGap = 2;
 // Tiles with the worst samples, steps of the search in one of them and in one of the others, and in all of
 // those together that need more.
 constexpr std::size_t kFirst = 32;
-constexpr std::size_t kStepsFirst = 5'000;
-constexpr std::size_t kStepsTile = 1'000;
-constexpr std::size_t kStepsLeft = 5'000'000;
+constexpr std::size_t kStepsFirst = 3'000;
+constexpr std::size_t kStepsTile = 50;
+constexpr std::size_t kStepsLeft = 100'000;
 // A histogram shows so many of the samples within its ends (the rest is in its outermost bins), and is never
 // narrower than this to either side, mm.
 constexpr double kUsual = 0.995;
@@ -191,8 +191,9 @@ class Measure {
     std::vector<std::size_t> open;
     for (const std::size_t t : tiles)
       if (gouge ? tiles_[t].gouge_open : tiles_[t].excess_open) open.push_back(t);
-    if (open.empty()) return true;
-    return round(open, worst, which, std::max(kStepsTile, kStepsLeft / open.size()), stage);
+    if (open.empty() || open.size() * kStepsTile > kStepsLeft) return true;
+    return round(open, worst, which, std::max(kStepsTile, std::min(kStepsFirst, kStepsLeft / open.size())),
+                 stage);
   }
   bool round(const std::vector<std::size_t>& tiles, TileWorst& worst, WorstDeviation TileWorst::*which,
              std::size_t steps, std::string_view stage) {

@@ -14,6 +14,8 @@ using geom::Vec3;
 
 // Patches and times are halved at most so often; by then both are far below any resolution.
 constexpr int kMostHalvings = 80;
+// Those of an excess are of places alone: a step in what is left is never smooth, however small the patch.
+constexpr int kMostCuts = 24;
 // Stretches of neighbours that are tried on a patch.
 constexpr std::size_t kRecent = 8;
 // Stretches along the motion that a corner may be covered by, seen from the one that covers the middle.
@@ -339,9 +341,15 @@ void TileSearch::excess(const Patch& patch, int halvings) {
   reached_ = {};
   Cover best = best_cover(patch, height());
   if (best.whole || height() >= options_.reach_mm) return;
-  if (steps_ == 0 || halvings >= kMostHalvings) {
+  if (steps_ == 0 || halvings >= kMostCuts) {
     worst_.excess_open = true;
-    if (look(patch.middle(), patch.normal())) raise_over(patch);
+    if (look(patch.middle(), patch.normal()) && !raise_over(patch)) {
+      // No height covers it. Cut to nothing, it holds an unmachined place, else nothing is known.
+      if (halvings >= kMostCuts)
+        beside_unmachined_ = true;
+      else
+        worst_.excess_most = options_.reach_mm;
+    }
     return;
   }
   --steps_;
@@ -362,7 +370,7 @@ void TileSearch::excess(const Patch& patch, int halvings) {
     // Where the tool is steep, what the motion may be off by matters more than the gap.
     const Point3 p = patch.p[i];
     const Vec3 n = patch.n[i];
-    raise_over({{p, p, p}, {n, n, n}});
+    if (!raise_over({{p, p, p}, {n, n, n}})) worst_.excess_most = options_.reach_mm;
   }
   if (any) best = best_cover(patch, height());
   if (best.whole) return;
@@ -392,14 +400,15 @@ std::array<Patch, 2> TileSearch::cut(const Patch& patch, const Cover& cover) con
 }
 
 /// The height that one moment is known to leave below it: the rest of the tile need not be shown to be lower.
-void TileSearch::raise_over(const Patch& patch) {
+/// False when there is none up to the reach.
+bool TileSearch::raise_over(const Patch& patch) {
   for (double more = 0; height() + more < options_.reach_mm; more = std::max(limits_.gap, kWider * more)) {
     const double up = height() + more;
     if (!best_cover(patch, up).whole) continue;
     worst_.excess_most = std::max(worst_.excess_most, up);
-    return;
+    return true;
   }
-  worst_.excess_most = options_.reach_mm;
+  return false;
 }
 
 }  // namespace burin::verify

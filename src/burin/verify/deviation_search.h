@@ -57,7 +57,7 @@ class TileSearch {
   Cover cover(const Patch& patch, const Moment& at, double height) const;
   Cover best_cover(const Patch& patch, double height);
   std::optional<double> look(geom::Point3 p, geom::Vec3 n);
-  void raise_over(const Patch& patch);
+  bool raise_over(const Patch& patch);
   void excess(const Patch& patch, int halvings);
   std::array<Patch, 2> cut(const Patch& patch, const Cover& cover) const;
   void remember(const Moment& at);
